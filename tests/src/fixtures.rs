@@ -136,6 +136,7 @@ pub fn with_candidate() -> Validation {
     let candidate = Candidate {
         name: "Odd <renderer> 1".into(),
         folder: "odd".into(),
+        declared: Default::default(),
         recorded,
         images: vec![image],
         radiance: vec![radiance],

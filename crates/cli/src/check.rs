@@ -6,10 +6,10 @@ use raypencil::cast::{
 };
 use raypencil::harness::{CheckedRaySet, check_packed_ray_sets};
 use raypencil::io::OutputFolder;
-use raypencil::judge::{Conventions, JudgeShare};
+use raypencil::judge::JudgeShare;
 use raypencil::pack::{
-    check_input, check_json, check_pack_verifying, check_screen, input_json, input_screen, is_input_pack,
-    write_check, write_input_check,
+    Declarations, check_input, check_json, check_pack_by, check_screen, input_json, input_screen,
+    is_input_pack, write_check, write_input_check,
 };
 
 use crate::args::Check;
@@ -31,15 +31,20 @@ fn checked(command: &Check, json: bool) -> Result<Outcome, Trouble> {
         return check_rays(command, json);
     }
     let spinner = Spinner::new();
-    let conventions = Conventions { miss: command.miss, ignores_faces: command.no_faces };
+    let declarations = Declarations {
+        precision: command.arithmetic,
+        miss: command.miss,
+        ignores_faces: command.no_faces,
+        ..command.declared.declarations()
+    };
     let share = if command.verify { JudgeShare::All } else { JudgeShare::Sample };
     let (pack, candidate) = (&command.pack, &command.candidate);
     memory::ask_check(pack)?;
-    let mut checked =
-        check_pack_verifying(pack, candidate, command.arithmetic, conventions, share, &spinner)?;
+    let mut checked = check_pack_by(pack, candidate, &declarations, share, &spinner)?;
     // The sets of rays that the pack has besides, if there are any.
     let precision = checked.recorded.precision;
-    let of_rays = CandidateConventions { miss: command.miss, ignores_faces: command.no_faces };
+    let declared = &checked.declared;
+    let of_rays = CandidateConventions { miss: declared.miss, ignores_faces: declared.ignores_faces };
     let sets = check_packed_ray_sets(&command.pack, &command.candidate, precision, of_rays, &spinner)?;
     checked.ray_sets = sets.iter().map(CheckedRaySet::outcome).collect();
     if let Some(folder) = &command.output {
@@ -70,6 +75,7 @@ fn set_text(CheckedRaySet { name, checked }: &CheckedRaySet) -> String {
 
 /// The same for a pack of rays.
 fn check_rays(command: &Check, json: bool) -> Result<Outcome, Trouble> {
+    refuse_declared(command, "pack of rays, whose answers are NPY files of fixed names")?;
     let spinner = Spinner::new();
     let conventions = CandidateConventions { miss: command.miss, ignores_faces: command.no_faces };
     let precision = command.arithmetic.unwrap_or(Precision::F64);
@@ -85,6 +91,18 @@ fn check_rays(command: &Check, json: bool) -> Result<Outcome, Trouble> {
     Ok(if checked.passes() { Outcome::Fine } else { Outcome::Differs })
 }
 
+/// Refuses options that concern maps of sensors alone.
+fn refuse_declared(command: &Check, kind: &str) -> Result<(), Trouble> {
+    if command.declared.is_empty() {
+        return Ok(());
+    }
+    let pack = command.pack.display();
+    Err(Trouble::Usage(format!(
+        "--channel, --scale: {pack} is a{} {kind}; expected neither",
+        if kind.starts_with('i') { "n" } else { "" }
+    )))
+}
+
 /// The same for an input pack, which asks for triangles.
 fn check_loader(command: &Check, json: bool) -> Result<Outcome, Trouble> {
     let is_of_rays = command.arithmetic.is_some() || command.miss.is_some() || command.no_faces;
@@ -93,6 +111,7 @@ fn check_loader(command: &Check, json: bool) -> Result<Outcome, Trouble> {
         let text = "--arithmetic, --miss and --no-faces declare how rays are answered; expected none of them";
         return Err(Trouble::Usage(format!("{pack} is an input pack: {text}")));
     }
+    refuse_declared(command, "input pack, which asks for triangles.npy")?;
     let checked = check_input(&command.pack, &command.candidate)?;
     if let Some(folder) = &command.output {
         write_input_check(&checked, folder)?;

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use raypencil::Progress;
+use raypencil::Progress as _;
 use raypencil::diff::{
     Sides, Thresholds, diff as compare, diff_json, diff_screen, diff_text, rule, write_diff,
 };
-use raypencil::io::{Channels, Limits, OutputFolder, Overrides, add_ray_sets, load, read_channels};
-use raypencil::judge::{GroundTruth, Recorded, check as judge};
+use raypencil::harness::read_sides;
+use raypencil::io::{OutputFolder, Overrides, load};
+use raypencil::judge::{GroundTruth, check as judge};
 use raypencil::pack::CheckError;
 
 use crate::args::Diff;
@@ -16,12 +17,6 @@ use crate::{Outcome, Trouble};
 
 pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
     let spinner = Spinner::new();
-    let read = |path: &Path| -> Result<Channels, Trouble> {
-        spinner.stage(&format!("{}: reading", path.display()));
-        let mut channels = read_channels(path, &Limits::default())?;
-        add_ray_sets(&mut channels, path, &Limits::default())?;
-        Ok(channels)
-    };
     if let Some(folder) = &command.output {
         // Its files would overwrite those of the recording, such as the summary.json of a validation.
         let same = |path: &Path| {
@@ -35,7 +30,7 @@ pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
         }
     }
     let output = command.output.as_deref().map(OutputFolder::begin).transpose()?;
-    let (a, b) = (read(&command.a)?, read(&command.b)?);
+    let [a, b] = read_sides([&command.a, &command.b], &command.declared.declarations(), &spinner)?;
     let thresholds = Thresholds {
         fail: command.fail,
         fail_relative: command.fail_relative,
@@ -45,13 +40,13 @@ pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
         shared_only: command.shared_only,
     };
     spinner.stage("comparing");
-    let mut difference = compare(&a, &b, &thresholds)?;
+    let mut difference = compare(&a.channels, &b.channels, &thresholds)?;
     let names = [&command.a, &command.b].map(|path| path.display().to_string());
-    let sides = Sides { names: [&names[0], &names[1]], channels: [&a, &b] };
+    let sides = Sides { names: [&names[0], &names[1]], channels: [&a.channels, &b.channels] };
     if let Some(scene) = &command.scene {
         spinner.stage(&format!("{scene}: loading"));
         let scene = load(scene, &Overrides { settings: command.set.clone(), ..Overrides::default() })?.scene;
-        let recorded = [&command.a, &command.b].map(|path| Recorded::read(path, &scene, command.arithmetic));
+        let recorded = [&a, &b].map(|side| side.recorded(&scene, command.arithmetic));
         let [of_a, of_b] = recorded;
         let (of_a, of_b) = (of_a.map_err(CheckError::from)?, of_b.map_err(CheckError::from)?);
         let truth = GroundTruth::certified(&scene, &spinner);

@@ -62,8 +62,14 @@ pub(crate) enum Trouble {
     },
 
     /// A candidate cannot be read.
-    #[error(transparent)]
-    Candidate(#[from] CandidateError),
+    #[error("{error}")]
+    Candidate {
+        /// The error.
+        error: CandidateError,
+        /// What to declare, if that may help.
+        #[help]
+        help: Option<String>,
+    },
 
     /// Two recordings cannot be compared.
     #[error(transparent)]
@@ -95,5 +101,12 @@ impl From<CheckError> for Trouble {
     fn from(error: CheckError) -> Self {
         let help = error.help();
         Self::Check { error: Box::new(error), help }
+    }
+}
+
+impl From<CandidateError> for Trouble {
+    fn from(error: CandidateError) -> Self {
+        let help = error.help();
+        Self::Candidate { error, help }
     }
 }

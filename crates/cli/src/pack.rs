@@ -1,16 +1,19 @@
 //! `raypencil pack`: writes the reference pack of a scene, or a blind one, which has no answers, or the input pack.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use raypencil::cast::{CastSource, RayPackCounts, read_rays, write_ray_pack};
+use raypencil::cast::{CastSource, RayArray, RayPackCounts, read_rays, write_ray_pack};
 use raypencil::harness::{PackedRaySet, write_pack_with_ray_sets};
-use raypencil::io::{FileError, OutputFolder, file_sha256_hex, hex_digits, polygon_warnings, read_triangles};
+use raypencil::io::{
+    FileError, LoadedRaySets, OutputFolder, file_sha256_hex, hex_digits, polygon_warnings, read_ray_sets,
+    read_triangles,
+};
 use raypencil::pack::{
     MIN_RAYS_PER_CLAUSE, Manifest, PackLabel, benched, blind_subject, input_faces, write_input,
 };
 use raypencil::report::counted;
 use raypencil::survey::warnings;
-use raypencil::{Progress as _, Sides};
+use raypencil::{NamedRaySet, Progress as _, Sides};
 
 use crate::args::Pack;
 use crate::console::{Spinner, say, warn};
@@ -71,31 +74,69 @@ pub(crate) fn pack(command: &Pack, json: bool) -> Result<Outcome, Trouble> {
     Ok(Outcome::Fine)
 }
 
-/// A pack of rays on a mesh.
+/// Rays for a pack of their own.
+struct Packed {
+    /// Name of their set; `None`: they are of no set, or of the only one.
+    name: Option<String>,
+    array: RayArray,
+    sides: Sides,
+}
+
+/// The rays of a file, and its digest: those of each set of a `.toml`, else an array.
+fn packed(rays: &Path) -> Result<(Vec<Packed>, String), Trouble> {
+    if !rays.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
+        let (_, digest) = file_sha256_hex(rays).map_err(|error| FileError::io(rays, "read", error))?;
+        return Ok((vec![Packed { name: None, array: read_rays(rays)?, sides: Sides::Both }], digest));
+    }
+    let LoadedRaySets { sets, sha256 } = read_ray_sets(rays)?;
+    let is_one = sets.len() == 1;
+    let of_set = |set: NamedRaySet| Packed {
+        name: (!is_one).then(|| set.name.clone()),
+        array: RayArray { shape: set.shape.clone(), rays: set.set.rays().to_vec() },
+        sides: set.set.sides(),
+    };
+    Ok((sets.into_iter().map(of_set).collect(), sha256))
+}
+
+/// A pack of rays on a mesh; of several sets of rays one each, in a folder of its name.
 fn pack_rays(command: &Pack, rays: &Path, json: bool) -> Result<Outcome, Trouble> {
     let spinner = Spinner::new();
     let file = &command.scene.scene;
     spinner.stage(&format!("{file}: loading"));
     let mesh = read_triangles(file.as_ref())?;
-    let array = read_rays(rays)?;
+    let (packed, digest) = packed(rays)?;
     let source = CastSource {
         mesh: file.clone(),
         mesh_sha256: mesh.digests.iter().map(hex_digits).collect(),
         rays: rays.display().to_string(),
-        rays_sha256: Some(file_sha256_hex(rays).map_err(|error| FileError::io(rays, "read", error))?.1),
+        rays_sha256: Some(digest),
         polygons: mesh.polygon_facts,
         ..CastSource::default()
     };
     warn(&polygon_warnings(&source.polygons));
-    memory::ask_cast(array.rays.len(), mesh.triangles.faces().len())?;
-    let sides = if command.fronts_only { Sides::Fronts } else { Sides::Both };
-    let counts = write_ray_pack(&command.output, (&mesh.triangles, &array, sides), &source, &spinner)?;
+    // One after the other.
+    let most = packed.iter().map(|one| one.array.rays.len()).max().unwrap_or(0);
+    memory::ask_cast(most, mesh.triangles.faces().len())?;
+    let mut packs = Vec::new();
+    for Packed { name, array, sides } in packed {
+        let folder = name.map_or(command.output.clone(), |name| command.output.join(name));
+        let sides = if command.fronts_only { Sides::Fronts } else { sides };
+        let counts = write_ray_pack(&folder, (&mesh.triangles, &array, sides), &source, &spinner)?;
+        packs.push((folder, counts));
+    }
     drop(spinner);
-    let folder = command.output.display();
-    let untested = counts.untested();
-    say(&match json {
-        true => format!("{:#}\n", serde_json::json!({ "pack": folder.to_string(), "untested": untested })),
-        false => format!("{folder}: the pack of {}", counts_text(&counts)),
+    let of_pack = |(folder, counts): &(PathBuf, RayPackCounts)| serde_json::json!({ "pack": folder.display().to_string(), "untested": counts.untested() });
+    say(&match (json, packs.as_slice()) {
+        (true, [one]) => format!("{:#}\n", of_pack(one)),
+        (true, all) => {
+            format!("{:#}\n", serde_json::json!({ "packs": all.iter().map(of_pack).collect::<Vec<_>>() }))
+        }
+        (false, all) => {
+            let text = |(folder, counts): &(PathBuf, RayPackCounts)| {
+                format!("{}: the pack of {}", folder.display(), counts_text(counts))
+            };
+            all.iter().map(text).collect()
+        }
     });
     Ok(Outcome::Fine)
 }

@@ -7,7 +7,7 @@ use raypencil::campaign::{MAX_SHARDS, PartName, Shard};
 use raypencil::cast::rays_from_bytes;
 use raypencil::drive::RecordContents;
 use raypencil::harness::MapFormat;
-use raypencil::io::{HeightUnit, LengthUnit, NoData, SceneIoError, Setting, UpAxis};
+use raypencil::io::{DeclaredChannel, HeightUnit, LengthUnit, NoData, SceneIoError, Setting, UpAxis};
 use raypencil::judge::{Class, JudgeShare};
 use raypencil::pack::PackLabel;
 use raypencil::rover::RULE_NAMES;
@@ -180,6 +180,19 @@ pub(crate) fn number(text: &str) -> Result<f64, String> {
         Ok(_) => format!("expected a number alone, without a unit: {digits}"),
         Err(_) => "expected a number, such as 1.5".into(),
     })
+}
+
+/// `MAP=CHANNEL` of a recording.
+pub(crate) fn declared_channel(text: &str) -> Result<DeclaredChannel, String> {
+    text.parse()
+}
+
+/// A length in metres that is positive.
+pub(crate) fn metres(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        metres if metres > 0.0 && metres.is_finite() => Ok(metres),
+        _ => Err("expected a positive number of metres, such as 0.001".into()),
+    }
 }
 
 /// A difference that is allowed: finite and not negative.

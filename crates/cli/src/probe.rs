@@ -1,13 +1,13 @@
 //! `raypencil probe`: prints every renderer's answer to one ray.
 
 use raypencil::Progress as _;
-use raypencil::harness::{Candidate, probe as ask};
+use raypencil::harness::probe as ask;
 use raypencil::{Place, SensorId};
 
 use crate::args::{Probe, typed_renderers};
 use crate::console::{Spinner, say};
 use crate::memory::Rates;
-use crate::subject::{contenders, subject};
+use crate::subject::{candidates, contenders, subject};
 use crate::{Outcome, Registry, Trouble, memory};
 
 pub(crate) fn probe(command: &Probe, json: bool, registry: &Registry) -> Result<Outcome, Trouble> {
@@ -23,9 +23,7 @@ pub(crate) fn probe(command: &Probe, json: bool, registry: &Registry) -> Result<
     memory::ask(Rates::PROBE, &subject.scene)?;
     // Candidates first, so that an error in their files is reported before the rendering.
     spinner.stage("reading candidates");
-    let candidates: Result<Vec<Candidate>, _> =
-        command.candidates.iter().map(|folder| Candidate::read(folder, &subject.scene)).collect();
-    let candidates = candidates?;
+    let candidates = candidates(&command.candidates, &command.declared, &subject.scene)?;
     let mut probe = ask(&subject, place, &contenders, &spinner)?;
     spinner.stage("judging candidates");
     probe.ask(&subject, &candidates);

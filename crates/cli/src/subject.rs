@@ -1,10 +1,12 @@
 //! The scene and the renderers that the arguments name.
 
-use raypencil::Progress;
-use raypencil::harness::{Contender, RENDERER_NAMES};
-use raypencil::io::{Subject, load};
+use std::path::PathBuf;
 
-use crate::args::{SceneArguments, SwitchArguments};
+use raypencil::harness::{Candidate, Contender, RENDERER_NAMES};
+use raypencil::io::{Subject, load};
+use raypencil::{Progress, Scene};
+
+use crate::args::{DeclaredArguments, SceneArguments, SwitchArguments};
 use crate::{Registry, Trouble};
 
 /// Loads the scene. `renderers` are the arguments that choose its renderers, from [`crate::args::typed_renderers`].
@@ -63,4 +65,19 @@ pub(crate) fn contenders(
         }
     }
     Ok(contenders)
+}
+
+/// The candidates in these folders; what is declared concerns each of them.
+pub(crate) fn candidates(
+    folders: &[PathBuf],
+    declared: &DeclaredArguments,
+    scene: &Scene,
+) -> Result<Vec<Candidate>, Trouble> {
+    if folders.is_empty() && !declared.is_empty() {
+        let text = "--channel, --scale: there is no candidate that they concern; expected --candidate DIR";
+        return Err(Trouble::Usage(text.into()));
+    }
+    let declarations = declared.declarations();
+    let read = |folder: &PathBuf| Candidate::read_as(folder, scene, &declarations).map_err(Trouble::from);
+    folders.iter().map(read).collect()
 }

@@ -3,16 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use raypencil::Progress as _;
-use raypencil::harness::{
-    Candidate, one_screen, summary_json, validate as run, whole_screen, write_validation,
-};
+use raypencil::harness::{one_screen, summary_json, validate as run, whole_screen, write_validation};
 
 use raypencil::io::OutputFolder;
 
 use crate::args::{Validate, typed_renderers};
 use crate::console::{Spinner, is_terminal, say};
 use crate::memory::Rates;
-use crate::subject::{contenders, subject};
+use crate::subject::{candidates, contenders, subject};
 use crate::{Outcome, Registry, Trouble, memory};
 
 pub(crate) fn validate(command: &Validate, json: bool, registry: &Registry) -> Result<Outcome, Trouble> {
@@ -28,9 +26,7 @@ pub(crate) fn validate(command: &Validate, json: bool, registry: &Registry) -> R
     let output = OutputFolder::begin(&folder)?;
     // Candidates first, so that an error in their files is reported before the rendering.
     spinner.stage("reading candidates");
-    let candidates: Result<Vec<Candidate>, _> =
-        command.candidates.iter().map(|folder| Candidate::read(folder, &subject.scene)).collect();
-    let candidates = candidates?;
+    let candidates = candidates(&command.candidates, &command.declared, &subject.scene)?;
     let mut validation = run(subject, &contenders, command.judge, &spinner);
     validation.allow_empty = command.allow_empty;
     if !candidates.is_empty() {

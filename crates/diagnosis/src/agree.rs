@@ -18,6 +18,14 @@ pub(crate) fn tolerance(case: Case<'_>, channel: Channel) -> f64 {
     if storage == Some(&Storage::F16) { 1.0 / 1024.0 } else { TRIAL_TOLERANCE }
 }
 
+/// The absolute tolerance for a channel that is stored in steps: half a step is rounded away.
+fn step(case: Case<'_>, channel: Channel) -> f64 {
+    match case.recorded.storage.get(&(channel.sensor, channel.item)) {
+        Some(Storage::Steps(step)) => step.get(),
+        _ => 0.0,
+    }
+}
+
 /// Whether a stated value is near an exact one.
 pub(crate) fn is_near(case: Case<'_>, channel: Channel, place: Place, stated: Value, exact: Value) -> bool {
     let tolerance = tolerance(case, channel);
@@ -28,7 +36,7 @@ pub(crate) fn is_near(case: Case<'_>, channel: Channel, place: Place, stated: Va
                 Quantity::CosIncidence | Quantity::CosOffAxis | Quantity::CosView
             );
             let scale = if is_cosine { 1.0 } else { exact.abs() };
-            (stated - exact).abs() <= tolerance * scale
+            (stated - exact).abs() <= tolerance * scale + step(case, channel)
         }
         (Value::Vector(stated), Value::Vector(exact)) => {
             let scale = if channel.item.quantity == Quantity::Point {

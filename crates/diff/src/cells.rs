@@ -97,6 +97,18 @@ pub(crate) struct CellStatistics {
     pub worst: Option<CellDifference>,
 }
 
+/// The number in a cell. "None" of whole numbers is NaN beside a channel of reals, where it has no other form.
+fn number(values: &Values, beside: &Values, index: usize) -> f64 {
+    match (values, beside) {
+        (Values::Wholes(whole), Values::Reals(real))
+            if whole.cells()[index] == u32::MAX && real.cells()[index].is_nan() =>
+        {
+            f64::NAN
+        }
+        _ => values.real(index),
+    }
+}
+
 /// Compares all cells of two channels of the same size, row by row.
 pub(crate) fn compare_cells(
     a: &Values,
@@ -127,7 +139,7 @@ pub(crate) fn compare_cells(
     let (mut largest, mut largest_ulp) = (0.0_f64, 0.0_f64);
     let (mut first_incomparable, mut index_of_largest) = (None, None);
     for index in 0..cells {
-        let (x, y) = (a.real(index), b.real(index));
+        let (x, y) = (number(a, b, index), number(b, a, index));
         match compare_numbers(x, y) {
             Comparison::Equal => finite += u64::from(x.is_finite()),
             Comparison::Incomparable => {

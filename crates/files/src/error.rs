@@ -123,6 +123,11 @@ impl Fault {
         Self { place: place.into(), found: found.into(), expected: expected.into() }
     }
 
+    /// The same fault inside a part of its file.
+    pub(crate) fn inside(self, part: &str) -> Self {
+        Self { place: format!("{part}, {}", self.place), ..self }
+    }
+
     /// Adds the file. Texts are shortened: a name that comes from the file may have a million characters.
     pub fn in_file(self, file: &Path) -> Box<Problem> {
         let [place, found, expected] = [self.place, self.found, self.expected].map(shortened);

@@ -1,4 +1,5 @@
-//! Files of numbers, and how they are written: NPY, PFM and OpenEXR, recordings of channels, SHA-256, output folders.
+//! Files of numbers, and how they are written: NPY, PFM and OpenEXR (NPZ, Zarr, PNG and TIFF are read), recordings of
+//! channels, SHA-256, output folders.
 //!
 //! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
 //!
@@ -15,10 +16,13 @@
 //! growing_file                   a file or table that grows for a while and is seen only when it is complete
 //! values -> shape                cells as a file stores them, and the size that a header claims
 //! npy, pfm                       arrays of NumPy and portable float maps
+//! npz, zarr                      archives and stores of arrays: read (named_array writes them)
+//! png, tiff                      depth images and other pictures, as numbers
 //! rays                           rays of no sensor, from NPY and CSV
 //! exr: map -> read, write        named channels and text attributes of an OpenEXR file
 //!      -> sensor_map, returns    the maps of one sensor, and the light that comes back to the camera, as channels
 //! channels: channel -> find,     recordings of any program: the channels of a file or folder by their keys
+//!           found -> declared,   what somebody declares of them: which channel is which map, the unit of whole numbers
 //!           merge -> read
 //! ```
 //!
@@ -51,33 +55,48 @@ mod harmless;
 mod limits;
 mod named_array;
 mod npy;
+mod npz;
 mod output_folder;
 mod pfm;
+mod png;
 mod rays;
 mod sha256;
 mod shape;
+mod tiff;
 mod values;
+mod zarr;
 
 pub use atomic::write_atomically;
-pub use channels::{Channel, Channels, add_ray_sets, read_channels, read_listed_channels};
+pub use channels::{
+    Channel, Channels, Declared, DeclaredChannel, Used, add_ray_sets, read_channels, read_channels_as,
+    read_listed_channels,
+};
 pub use error::{Fault, FileError, Problem, shortened};
-pub use exr::{Attributes, ExrMap, Raster, exr_from_bytes, read_exr, read_exr_map, write_exr, write_exr_map};
+pub use exr::{
+    Attributes, ExrMap, ExrPart, Raster, exr_from_bytes, exr_parts_from_bytes, read_exr, read_exr_map,
+    read_exr_parts, write_exr, write_exr_map,
+};
 pub use folder::{FolderError, begin_output_folder, create_folder};
 pub use growing_file::{GrowingFile, NpyRows};
 pub use harmless::{harmless, harmless_line, harmless_source, markdown_text};
 pub use limits::{
-    Limits, MAX_EXPANSION, MAX_EXR_ATTRIBUTES, MAX_EXR_CHANNELS, MAX_EXR_HEADER_BYTES, MAX_INFLATED_BYTES,
+    Limits, MAX_EXPANSION, MAX_EXR_ATTRIBUTES, MAX_EXR_CHANNELS, MAX_EXR_HEADER_BYTES, MAX_EXR_PARTS,
+    MAX_INFLATED_BYTES,
 };
 pub use named_array::{ArrayData, NamedArray, write_npz, write_zarr};
 pub use npy::{
     ArrayNumber, Numbers, npy_from_bytes, npy_numbers_from_bytes, read_npy, read_npy_numbers, write_npy,
     write_npy_numbers,
 };
+pub use npz::{npz_from_bytes, read_npz};
 pub use output_folder::{MIN_ABANDONED_AGE, OutputFolder, remove_abandoned};
 pub use pfm::{pfm_from_bytes, read_pfm, write_pfm};
+pub use png::{png_from_bytes, read_picture_png};
 pub use rays::{RayArray, ray_rows, rays_from_bytes, read_rays};
 pub use sha256::{Sha256Digest, combined_sha256_hex, file_sha256, file_sha256_hex, hex_digits, sha256};
-pub use values::{Array, Storage, Values};
+pub use tiff::{read_picture_tiff, tiff_from_bytes};
+pub use values::{Array, Step, Storage, Values};
+pub use zarr::{ZarrArray, read_zarr};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

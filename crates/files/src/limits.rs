@@ -1,9 +1,12 @@
 //! Limits that a reader holds a file's claims against before it asks for memory.
 
-/// Maximum number of attributes of an OpenEXR file. Files have a few dozen.
+/// Maximum number of attributes of an OpenEXR file, in all its parts. Parts have a few dozen.
 pub const MAX_EXR_ATTRIBUTES: usize = 1024;
 
-/// Maximum number of channels of an OpenEXR file.
+/// Maximum number of parts of an OpenEXR file.
+pub const MAX_EXR_PARTS: usize = 64;
+
+/// Maximum number of channels of an OpenEXR file, in all its parts.
 pub const MAX_EXR_CHANNELS: usize = 1024;
 
 /// Maximum size of the header of an OpenEXR file, bytes: 16 MiB. Some programs store lists of names there.

@@ -4,7 +4,7 @@
 use raypencil_scene::Image;
 
 use crate::error::Fault;
-use crate::limits::Limits;
+use crate::limits::{Limits, MAX_EXPANSION, MAX_INFLATED_BYTES};
 
 /// Shape of an array, as its header claims.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,6 +23,40 @@ impl Shape {
     ///
     /// The planes of an accepted shape therefore take at most 4 times the memory of the file.
     pub(crate) fn check(&self, number_bytes: u64, bytes: u64, limits: &Limits) -> Result<(), Fault> {
+        self.check_size(limits)?;
+        let &Self { rows, columns, components } = self;
+        // At most 2^64 cells times 2^13 bytes.
+        let claimed = u128::from(rows * columns) * u128::from(components * number_bytes);
+        if claimed > u128::from(limits.bytes) {
+            let found = format!("{rows} rows of {columns} columns, {components} components");
+            return Err(Fault::new("shape", found, format!("at most {} bytes", limits.bytes)));
+        }
+        // CHOICE: surplus bytes are refused as well. Header and numbers then do not belong together, and every
+        // number may be in a wrong place.
+        if claimed != u128::from(bytes) {
+            let expected = format!("the {claimed} bytes of its shape (is the file cut off?)");
+            return Err(Fault::new("numbers", format!("{bytes} bytes"), expected));
+        }
+        Ok(())
+    }
+}
+
+impl Shape {
+    /// Refuses a shape without cells, a shape beyond `limits`, and one whose planes would take far more memory than a
+    /// compressed file of `file_bytes` needs: a small one could ask for gigabytes.
+    pub(crate) fn check_decoded(&self, file_bytes: u64, limits: &Limits) -> Result<(), Fault> {
+        let &Self { rows, columns, components } = self;
+        let doubles = u128::from(rows) * u128::from(columns) * u128::from(components) * 8;
+        let most = MAX_INFLATED_BYTES.max(MAX_EXPANSION.saturating_mul(file_bytes)).min(limits.bytes);
+        if doubles > u128::from(most) {
+            let found = format!("{columns} x {rows} cells of {components} components in {file_bytes} bytes");
+            return Err(Fault::new("size", found, format!("at most {most} bytes as doubles")));
+        }
+        self.check_size(limits)
+    }
+
+    /// Refuses a shape without cells, and a shape of too many.
+    fn check_size(&self, limits: &Limits) -> Result<(), Fault> {
         let &Self { rows, columns, components } = self;
         let refuse = |expected: String| {
             let found = format!("{rows} rows of {columns} columns, {components} components");
@@ -39,17 +73,6 @@ impl Shape {
             && (columns, rows) != (width.into(), height.into())
         {
             return refuse(format!("{height} rows of {width} columns"));
-        }
-        // At most 2^64 cells times 2^13 bytes.
-        let claimed = u128::from(rows * columns) * u128::from(components * number_bytes);
-        if claimed > u128::from(limits.bytes) {
-            return refuse(format!("at most {} bytes", limits.bytes));
-        }
-        // CHOICE: surplus bytes are refused as well. Header and numbers then do not belong together, and every
-        // number may be in a wrong place.
-        if claimed != u128::from(bytes) {
-            let expected = format!("the {claimed} bytes of its shape (is the file cut off?)");
-            return Err(Fault::new("numbers", format!("{bytes} bytes"), expected));
         }
         Ok(())
     }

@@ -2,9 +2,43 @@
 
 use raypencil_scene::Image;
 
-/// Number format in which a file stores the cells of a channel.
+/// Distance of neighbouring numbers that are stored as multiples of it: positive and finite. Of two, the larger one is the
+/// coarser, and comes first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Step {
+    /// Bits of the number: those of positive numbers are in their order.
+    bits: u64,
+}
+
+impl Step {
+    /// A step; `None` unless it is positive and finite.
+    pub fn new(step: f64) -> Option<Self> {
+        (step > 0.0 && step.is_finite()).then_some(Self { bits: step.to_bits() })
+    }
+
+    /// The number.
+    pub fn get(self) -> f64 {
+        f64::from_bits(self.bits)
+    }
+}
+
+impl Ord for Step {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        other.bits.cmp(&self.bits)
+    }
+}
+
+impl PartialOrd for Step {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// Number format in which a file stores the cells of a channel. The coarser comes first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Storage {
+    /// Multiples of a step, metres: lengths as whole numbers, such as millimetres in 16 bits.
+    Steps(Step),
     /// IEEE 754 half precision.
     F16,
     /// IEEE 754 single precision.
@@ -30,7 +64,8 @@ impl Storage {
             Self::F16 => 65504.0,
             Self::F32 => f64::from(f32::MAX),
             Self::F64 => f64::MAX,
-            Self::Whole => f64::INFINITY,
+            // Numbers beyond the type of the file were cut off before anybody reads them.
+            Self::Whole | Self::Steps(_) => f64::INFINITY,
         }
     }
 
@@ -48,7 +83,25 @@ impl Storage {
         match self {
             Self::F16 => Some(1 << 11),
             Self::F32 => Some(1 << 24),
-            Self::F64 | Self::Whole => None,
+            Self::F64 | Self::Whole | Self::Steps(_) => None,
+        }
+    }
+
+    /// The storage in the words of reports, if it is coarser than single precision: `half precision`, `steps of 0.001 m`.
+    ///
+    /// ```
+    /// use raypencil_files::{Step, Storage};
+    ///
+    /// assert_eq!(Storage::F16.coarse_words().as_deref(), Some("half precision"));
+    /// let millimetres = Storage::Steps(Step::new(0.001).unwrap());
+    /// assert_eq!(millimetres.coarse_words().as_deref(), Some("steps of 0.001 m"));
+    /// assert_eq!(Storage::F32.coarse_words(), None);
+    /// ```
+    pub fn coarse_words(self) -> Option<String> {
+        match self {
+            Self::F16 => Some("half precision".into()),
+            Self::Steps(_) => Some(self.to_string()),
+            Self::F32 | Self::F64 | Self::Whole => None,
         }
     }
 
@@ -70,6 +123,7 @@ impl Storage {
             Self::F16 => (10, -14),
             Self::F32 => (23, -126),
             Self::F64 => (52, -1022),
+            Self::Steps(step) => return if value.is_finite() { step.get() } else { f64::NAN },
             Self::Whole => {
                 return if value.is_finite() && libm::trunc(value) == value { 1.0 } else { f64::NAN };
             }
@@ -86,6 +140,7 @@ impl Storage {
 impl std::fmt::Display for Storage {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
+            Self::Steps(step) => return write!(f, "steps of {} m", step.get()),
             Self::F16 => "half",
             Self::F32 => "single",
             Self::F64 => "double",
@@ -153,5 +208,10 @@ mod tests {
         assert_eq!(Storage::F32.ulp(f64::from(f32::MAX)), (0..104).fold(1.0, |power, _| 2.0 * power));
         assert!(Storage::F32.ulp(f64::INFINITY).is_nan() && Storage::F64.ulp(f64::NAN).is_nan());
         assert_eq!(Storage::Whole.ulp(7.0), 1.0);
+        let steps = |step| Storage::Steps(Step::new(step).unwrap());
+        assert_eq!(steps(0.001).ulp(3.2), 0.001);
+        // The coarser comes first: centimetres before millimetres, both before half precision.
+        assert!(steps(0.01) < steps(0.001) && steps(0.001) < Storage::F16);
+        assert_eq!([0.0, -1.0, f64::NAN, f64::INFINITY].map(Step::new), [None; 4]);
     }
 }

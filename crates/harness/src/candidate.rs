@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use raypencil_files::{Channels, Storage, Values, harmless_line};
 use raypencil_judge::{Recorded, RecordingError};
-use raypencil_pack::{Provenance, ProvenanceError, note, precision_of};
-use raypencil_scene::{Image, Precision, Scene, SensorId};
+use raypencil_pack::{Declarations, Provenance, ProvenanceError, note};
+use raypencil_scene::{Image, Scene, SensorId};
 
 use crate::estimate::{Estimate, MonteCarloImage};
 
@@ -22,6 +22,16 @@ pub enum CandidateError {
     Recording(#[from] RecordingError),
 }
 
+impl CandidateError {
+    /// What to declare so that the candidate is understood, if that may help.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::Recording(error) => error.help(),
+            Self::Provenance(_) => None,
+        }
+    }
+}
+
 /// A recording of a scene by another program.
 ///
 /// [`Candidate::read`] reads one from a folder.
@@ -31,6 +41,8 @@ pub struct Candidate {
     pub name: String,
     /// The folder that it was read from.
     pub folder: PathBuf,
+    /// What was declared about it beside its `candidate.json`.
+    pub declared: Declarations,
     /// The maps.
     pub recorded: Recorded,
     /// The Monte Carlo images of the camera.
@@ -76,10 +88,23 @@ impl Candidate {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn read(folder: &Path, scene: &Scene) -> Result<Self, CandidateError> {
+        Self::read_as(folder, scene, &Declarations::default())
+    }
+
+    /// The same for a recording about which more is declared than its `candidate.json` says.
+    ///
+    /// # Errors
+    /// As [`Candidate::read`]; something declared that is not so.
+    pub fn read_as(
+        folder: &Path,
+        scene: &Scene,
+        declarations: &Declarations,
+    ) -> Result<Self, CandidateError> {
         let note = note(folder, scene)?;
-        let precision = note.as_ref().map_or(Precision::F64, |note| precision_of(note.arithmetic));
-        let channels = Recorded::channels(folder, scene)?;
-        let recorded = Recorded::of_folder(folder, scene, precision, &channels)?;
+        let declared = declarations.clone().with_note(note.as_ref());
+        let channels = Recorded::channels(folder, scene, &declared.declared())?;
+        let recorded =
+            Recorded::of_folder(folder, scene, declared.precision(), &channels, declared.conventions())?;
         let name = note.as_ref().map_or_else(|| recorded.name.clone(), |note| note.program.clone());
         // Reports name the program, not its folder. A line break in it would look like a line of the report's own.
         let name = harmless_line(&name);
@@ -87,7 +112,8 @@ impl Candidate {
         let reader = ExtraChannels { folder, scene, channels: &channels };
         let images = reader.images(note.as_ref())?;
         let radiance = reader.radiance()?;
-        Ok(Self { name, folder: folder.to_path_buf(), recorded, images, radiance })
+        let declared = declarations.clone();
+        Ok(Self { name, folder: folder.to_path_buf(), declared, recorded, images, radiance })
     }
 }
 

@@ -49,6 +49,7 @@
 //! probe                one ray, as every renderer and the referee answer it
 //! estimate             a Monte Carlo image: mean and standard error
 //! candidate            what another program recorded of a scene
+//! sides                two recordings that are to be compared, as what is declared says
 //! monte_carlo          a candidate's Monte Carlo images against pencils drawn at random (z-test)
 //! radiance             a candidate's radiance along single rays against the closed form
 //! scoreboard           every renderer and candidate, checked against the exact answers
@@ -89,6 +90,7 @@ mod reproducer;
 mod run;
 mod scene_view;
 mod scoreboard;
+mod sides;
 mod validation;
 
 pub use candidate::{Candidate, CandidateError, RadianceMap};
@@ -113,6 +115,7 @@ pub use reproducer::{Reproducer, write_reproducer};
 pub use run::{Validator, validate};
 pub use scene_view::{scene_json, scene_picture, scene_words};
 pub use scoreboard::{CandidateReport, RendererReport, Scoreboard};
+pub use sides::{Side, read_sides};
 pub use validation::{Counts, Pair, Validation};
 
 /// The README's example, compiled and run with the documentation tests.

@@ -5,16 +5,17 @@ use std::path::{Path, PathBuf};
 use raypencil_diagnosis::{Diagnosis, diagnose};
 use raypencil_files::{FileError, Limits, Storage, file_sha256_hex, read_listed_channels};
 use raypencil_judge::{
-    Answers, Check, Class, Conventions, DifferingRay, GroundTruth, Item, JudgeShare, Quantity, Recorded,
-    RecordingError, SensorResult, UncertifiedAnswer, check,
+    Answers, Check, Class, DifferingRay, GroundTruth, Item, JudgeShare, Quantity, Recorded, RecordingError,
+    SensorResult, UncertifiedAnswer, check,
 };
 use raypencil_referee::Referee;
 use raypencil_scene::{Place, Precision, Progress, Scene, SensorId};
 use raypencil_scene_io::{LoadedScene, SceneIoError, Subject, probe_command, quoted, scene_sha256};
 
 use crate::blind::blind_scene;
+use crate::declarations::Declarations;
 use crate::manifest::{FileRole, MANIFEST_NAME, Manifest, PackKind};
-use crate::provenance::{ProvenanceError, note, precision_of};
+use crate::provenance::{ProvenanceError, note};
 use crate::published::PackIdentity;
 use crate::rays::{rays_name, rays_sha256};
 
@@ -75,6 +76,8 @@ pub struct Checked {
     pub pack: PackIdentity,
     /// What of the pack was found to be what the scene gives.
     pub verified: Verified,
+    /// What was declared about the candidate, by its note, too.
+    pub declared: Declarations,
     /// The sets of rays of the pack, which are checked apart; empty if it has none, or if nobody asked.
     pub ray_sets: Vec<RaySetOutcome>,
 }
@@ -153,52 +156,44 @@ pub fn check_pack(
     precision: Option<Precision>,
     progress: &dyn Progress,
 ) -> Result<Checked, CheckError> {
-    check_pack_by(pack, candidate, precision, Conventions::STANDARD, progress)
+    let declarations = Declarations { precision, ..Declarations::default() };
+    check_pack_by(pack, candidate, &declarations, JudgeShare::Sample, progress)
 }
 
-/// The same for a candidate whose conventions are declared and may differ from those of `docs/formats/files.md`.
+/// The same for a candidate about which more is declared: conventions that differ from those of `docs/formats/files.md`, and
+/// which of its channels is which map. Its `candidate.json` may declare the same. `share` is that of the pack's answers which
+/// are compared with the referee's: each answer by which the candidate is wrong always is, and the rays are always compared
+/// with those of the scene.
 ///
 /// ```
 /// use std::path::Path;
 ///
 /// use raypencil_files::write_npy;
-/// use raypencil_judge::Conventions;
-/// use raypencil_pack::check_pack_by;
-/// use raypencil_scene::{Image, Precision, Silent};
+/// use raypencil_judge::JudgeShare;
+/// use raypencil_pack::{Declarations, check_pack_by};
+/// use raypencil_scene::{Image, Silent};
 ///
 /// // Ranges of -1 everywhere. As a declared "no hit" they are read, and wrong where something is hit.
 /// let pack = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/packs/pyramids");
 /// let folder = tempfile::tempdir()?;
 /// std::fs::create_dir(folder.path().join("camera"))?;
-/// write_npy(folder.path().join("camera/range.T.npy"), &[&Image::filled(96, 72, -1.0)])?;
-/// let conventions = Conventions { miss: Some(-1.0), ..Conventions::STANDARD };
-/// let checked = check_pack_by(&pack, folder.path(), Some(Precision::F64), conventions, &Silent)?;
+/// write_npy(folder.path().join("camera/mine.npy"), &[&Image::filled(96, 72, -1.0)])?;
+/// let declared = Declarations {
+///     miss: Some(-1.0),
+///     channels: vec!["range.T=mine".parse()?],
+///     ..Declarations::default()
+/// };
+/// let checked = check_pack_by(&pack, folder.path(), &declared, JudgeShare::Sample, &Silent)?;
 /// assert!(!checked.passes());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
-/// As [`check_pack`].
+/// As [`check_pack`]; something declared that is not so; answers that are not the referee's.
 pub fn check_pack_by(
     pack: &Path,
     candidate: &Path,
-    precision: Option<Precision>,
-    conventions: Conventions,
-    progress: &dyn Progress,
-) -> Result<Checked, CheckError> {
-    check_pack_verifying(pack, candidate, precision, conventions, JudgeShare::Sample, progress)
-}
-
-/// The same, with the share of the pack's answers that are compared with the referee's. Each answer by which the candidate is
-/// wrong always is, and the rays are always compared with those of the scene.
-///
-/// # Errors
-/// As [`check_pack`]; answers that are not the referee's.
-pub fn check_pack_verifying(
-    pack: &Path,
-    candidate: &Path,
-    precision: Option<Precision>,
-    conventions: Conventions,
+    declarations: &Declarations,
     share: JudgeShare,
     progress: &dyn Progress,
 ) -> Result<Checked, CheckError> {
@@ -222,10 +217,10 @@ pub fn check_pack_verifying(
     }
     // The candidate before the answers, so that its faults are reported soon.
     progress.stage("reading the candidate");
-    let note = note(candidate, &scene)?;
-    let noted = note.map(|note| precision_of(note.arithmetic));
-    let precision = precision.or(noted).unwrap_or(Precision::F64);
-    let recorded = Recorded::read_by(candidate, &scene, precision, conventions)?;
+    let declared = declarations.clone().with_note(note(candidate, &scene)?.as_ref());
+    let channels = Recorded::channels(candidate, &scene, &declared.declared())?;
+    let recorded =
+        Recorded::of_folder(candidate, &scene, declared.precision(), &channels, declared.conventions())?;
 
     let truth = match (manifest.kind, manifest.blind_seed) {
         (PackKind::Blind, Some(seed)) => {
@@ -284,7 +279,18 @@ pub fn check_pack_verifying(
     };
     let is_blind = manifest.kind == PackKind::Blind;
     let ray_sets = Vec::new();
-    Ok(Checked { subject, recorded, check, diagnosis, exact, is_blind, pack: identity, verified, ray_sets })
+    Ok(Checked {
+        subject,
+        recorded,
+        check,
+        diagnosis,
+        exact,
+        is_blind,
+        pack: identity,
+        verified,
+        declared,
+        ray_sets,
+    })
 }
 
 /// The first answer by which the candidate is wrong and which is itself not the referee's.

@@ -14,7 +14,8 @@
 //! manifest/                          manifest.json: structure, paths, consistency, reading, writing
 //! margins                            how far each ray is from another answer
 //! arrays, exr_map, rays -> write     the files of a pack
-//! provenance -> check                the candidate's note, and the check of a candidate
+//! note_values -> provenance          the candidate's note
+//! declarations -> check              what is declared about a candidate, also in its note; the check of a candidate
 //! published                          version and licence of a pack, and the packs that are published
 //! input/                             a glTF file, the triangles that it must become, and the check of a loader
 //! check_report/                      a check as screen, page, JSON and JUnit
@@ -41,10 +42,12 @@ mod canonical_nan;
 mod check;
 mod check_report;
 mod clauses;
+mod declarations;
 mod exr_map;
 mod input;
 mod manifest;
 mod margins;
+mod note_values;
 mod provenance;
 mod published;
 mod rays;
@@ -54,14 +57,13 @@ mod write;
 
 pub use bench::{BENCH_BEAMS, benched, with_bench};
 pub use blind::{blind_scene, blind_subject};
-pub use check::{
-    CheckError, Checked, RaySetOutcome, Verified, check_pack, check_pack_by, check_pack_verifying,
-};
+pub use check::{CheckError, Checked, RaySetOutcome, Verified, check_pack, check_pack_by};
 pub use check_report::{
     check_json, check_page, check_screen, check_suite, items_not_given, not_given, rays_not_given,
     write_check,
 };
 pub use clauses::{ClauseRays, MIN_RAYS_PER_CLAUSE, can_count_clauses, clause_rays};
+pub use declarations::Declarations;
 pub use input::{
     InputChecked, InputFace, LoadingClause, WrongFace, check_input, input_faces, input_glb, input_json,
     input_screen, is_input_pack, write_input, write_input_check,
@@ -70,6 +72,7 @@ pub use manifest::{
     ChannelType, FileRole, FileType, MANIFEST_FORMAT, Manifest, ManifestChannel, ManifestClause,
     ManifestFile, ManifestScene, ManifestSensor, PackKind,
 };
+pub use note_values::{ChannelNames, MissNumber};
 pub use provenance::{Arithmetic, MonteCarloTotal, Provenance, ProvenanceError, note, precision_of};
 pub use published::{PUBLISHED, PackIdentity, PackLabel, PublishedPack};
 pub use write::{PackError, write_pack, write_questions};

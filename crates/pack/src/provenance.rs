@@ -3,12 +3,13 @@
 
 use std::path::{Path, PathBuf};
 
-use raypencil_files::{Fault, FileError, bytes};
+use raypencil_files::{DeclaredChannel, Fault, FileError, bytes};
 use raypencil_scene::{Precision, Scene};
 use raypencil_scene_io::scene_sha256;
 use serde::Deserialize;
 
 use crate::manifest::ManifestScene;
+use crate::note_values::{ChannelNames, MissNumber};
 
 /// The note's file name.
 const FILE_NAME: &str = "candidate.json";
@@ -38,6 +39,18 @@ pub struct Provenance {
     /// Total fluxes of Monte Carlo images.
     #[serde(default)]
     pub totals: Vec<MonteCarloTotal>,
+    /// The channels of the recording's files that are maps of another name.
+    #[serde(default)]
+    pub channels: ChannelNames,
+    /// Metres that a unit of whole numbers in maps of lengths stands for.
+    #[serde(default)]
+    pub scale: Option<f64>,
+    /// A number that means "no hit".
+    #[serde(default)]
+    pub miss: Option<MissNumber>,
+    /// Whether the channel of faces is left out.
+    #[serde(default)]
+    pub no_faces: bool,
 }
 
 /// Arithmetic that a program computes in, whichever type it stores.
@@ -147,6 +160,18 @@ impl Provenance {
                 )));
             }
         }
+        for (map, channel) in &read.channels.0 {
+            if let Err(fault) = DeclaredChannel::new(map, channel) {
+                return Err(refuse(Fault::new("channels", format!("{map:?}: {channel:?}"), fault)));
+            }
+        }
+        if let Some(scale) = read.scale.filter(|scale| !(*scale > 0.0)) {
+            return Err(refuse(Fault::new(
+                "scale",
+                scale.to_string(),
+                "metres for each unit, such as 0.001",
+            )));
+        }
         let is_flux = |value: f64| value.is_finite() && value >= 0.0;
         if let Some(index) =
             read.totals.iter().position(|total| !is_flux(total.mean) || !is_flux(total.error))
@@ -235,6 +260,24 @@ mod tests {
         assert_eq!(of(alone).expect("no scene, no other scene").expect("a note").program, "ann");
     }
 
+    /// The note with one key more.
+    fn with(key: &str) -> String {
+        GOOD.replacen('{', &format!("{{{key}, "), 1)
+    }
+
+    #[test]
+    fn a_note_remembers_what_is_declared() {
+        let keys = r#""channels": {"depth.Z": "ViewLayer.Depth.Z", "camera/range.T": "Y"}, "scale": 0.001, "miss": "nan",
+            "no_faces": true"#;
+        let note = read(&with(keys)).expect("a note").expect("one that is there");
+        let names = [("depth.Z", "ViewLayer.Depth.Z"), ("camera/range.T", "Y")];
+        assert_eq!(note.channels.0, names.map(|(map, channel)| (map.to_string(), channel.to_string())));
+        assert_eq!((note.scale, note.no_faces), (Some(0.001), true));
+        assert!(note.miss.expect("a number").0.is_nan());
+        let note = read(&with(r#""miss": -1"#)).expect("a note").expect("one that is there");
+        assert_eq!((note.miss, note.scale, note.no_faces), (Some(MissNumber(-1.0)), None, false));
+    }
+
     #[test]
     fn invalid_notes_are_refused_with_the_place() {
         for (text, words) in [
@@ -243,6 +286,14 @@ mod tests {
             (r#"{"format": 1, "program": "P"}"#, vec!["arithmetic"]),
             (&GOOD.replace("f32", "f16"), vec!["f16"]),
             (&GOOD.replace("3e-12", "-3e-12"), vec!["totals[0]", "error -0.000000000003"]),
+            (
+                &with(r#""channels": {"depth.Z": "Z", "depth.Z": "Y"}"#),
+                vec!["JSON", "depth.Z is there twice"],
+            ),
+            (&with(r#""channels": {"depth.Z": ""}"#), vec!["channels", "expected the name of a channel"]),
+            (&with(r#""channels": ["depth.Z=Z"]"#), vec!["a map of names of maps and channels"]),
+            (&with(r#""scale": 0"#), vec!["scale: 0; expected metres for each unit"]),
+            (&with(r#""miss": "inf""#), vec!["a number or \"nan\""]),
         ] {
             let message = read(text).expect_err(text).to_string();
             for word in words {

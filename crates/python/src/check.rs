@@ -4,18 +4,18 @@ use std::path::PathBuf;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use raypencil::Precision;
 use raypencil::cast::{
     CandidateConventions, check_ray_pack, is_ray_pack, ray_check_json, ray_check_text, write_ray_check,
 };
 use raypencil::harness::{CheckedRaySet, check_packed_ray_sets};
-use raypencil::judge::{Conventions, JudgeShare};
+use raypencil::judge::JudgeShare;
 use raypencil::pack::{
-    CheckError, check_input, check_json, check_pack_verifying, check_screen, input_json, input_screen,
+    CheckError, Declarations, check_input, check_json, check_pack_by, check_screen, input_json, input_screen,
     is_input_pack, write_check, write_input_check,
 };
 
 use crate::array::Arrays;
+use crate::declared::declared;
 use crate::failure::Failure;
 use crate::judge::{precision, verdict_arrays};
 use crate::watch::{Watch, watched};
@@ -24,9 +24,7 @@ use crate::watch::{Watch, watched};
 struct Question {
     pack: PathBuf,
     candidate: PathBuf,
-    precision: Option<Precision>,
-    miss: Option<f64>,
-    ignores_faces: bool,
+    declared: Declarations,
     share: JudgeShare,
     output: Option<PathBuf>,
 }
@@ -44,10 +42,11 @@ struct Answer {
 }
 
 fn of_input(question: &Question) -> Result<Answer, Failure> {
-    let Question { pack, candidate, output, precision, miss, ignores_faces, .. } = question;
-    if precision.is_some() || miss.is_some() || *ignores_faces {
+    let Question { pack, candidate, output, declared, .. } = question;
+    if *declared != Declarations::default() {
         return Err(Failure::new(format!(
-            "{} is an input pack: arithmetic, miss and no_faces declare how rays are answered; expected none of them",
+            "{} is an input pack: arithmetic, miss, no_faces, channels and scale declare how rays are answered; expected none \
+             of them",
             pack.display()
         )));
     }
@@ -67,9 +66,15 @@ fn of_input(question: &Question) -> Result<Answer, Failure> {
 }
 
 fn of_rays(question: &Question, watch: &Watch) -> Result<Answer, Failure> {
-    let Question { pack, candidate, output, precision, miss, ignores_faces, .. } = question;
-    let conventions = CandidateConventions { miss: *miss, ignores_faces: *ignores_faces };
-    let precision = precision.unwrap_or(Precision::F64);
+    let Question { pack, candidate, output, declared, .. } = question;
+    if !declared.channels.is_empty() || declared.scale.is_some() {
+        return Err(Failure::new(format!(
+            "{} is a pack of rays, whose answers have fixed names: expected neither channels nor scale",
+            pack.display()
+        )));
+    }
+    let conventions = CandidateConventions { miss: declared.miss, ignores_faces: declared.ignores_faces };
+    let precision = declared.precision();
     let checked = check_ray_pack(pack, candidate, precision, conventions, watch)?;
     if let Some(folder) = output {
         write_ray_check(&checked, folder)?;
@@ -86,14 +91,13 @@ fn of_rays(question: &Question, watch: &Watch) -> Result<Answer, Failure> {
 }
 
 fn of_scene(question: &Question, watch: &Watch) -> Result<Answer, Failure> {
-    let Question { pack, candidate, output, precision, miss, ignores_faces, share } = question;
-    let conventions = Conventions { miss: *miss, ignores_faces: *ignores_faces };
+    let Question { pack, candidate, output, declared, share } = question;
     let helped = |error: CheckError| Failure::with_help(&error, error.help());
-    let mut checked =
-        check_pack_verifying(pack, candidate, *precision, conventions, *share, watch).map_err(helped)?;
+    let mut checked = check_pack_by(pack, candidate, declared, *share, watch).map_err(helped)?;
     // The sets of rays that the pack has besides, if there are any.
     let precision = checked.recorded.precision;
-    let of_rays = CandidateConventions { miss: *miss, ignores_faces: *ignores_faces };
+    let declared = &checked.declared;
+    let of_rays = CandidateConventions { miss: declared.miss, ignores_faces: declared.ignores_faces };
     let sets = check_packed_ray_sets(pack, candidate, precision, of_rays, watch)?;
     checked.ray_sets = sets.iter().map(CheckedRaySet::outcome).collect();
     let mut text = check_screen(&checked);
@@ -125,13 +129,16 @@ fn of_scene(question: &Question, watch: &Watch) -> Result<Answer, Failure> {
 /// Checks a folder of answers against a pack of any kind.
 #[pyfunction]
 #[pyo3(signature = (
-    pack, candidate, arithmetic=None, miss=None, no_faces=false, verify=false, output=None, on_stage=None
+    pack, candidate, channels, scale, arithmetic=None, miss=None, no_faces=false, verify=false, output=None,
+    on_stage=None
 ))]
 #[allow(clippy::too_many_arguments, reason = "the arguments of a Python function by their names")]
 pub(crate) fn check<'py>(
     py: Python<'py>,
     pack: PathBuf,
     candidate: PathBuf,
+    channels: Vec<(String, String)>,
+    scale: Option<f64>,
     arithmetic: Option<String>,
     miss: Option<f64>,
     no_faces: bool,
@@ -148,7 +155,9 @@ pub(crate) fn check<'py>(
             )));
         }
         let share = if verify { JudgeShare::All } else { JudgeShare::Sample };
-        let question = Question { pack, candidate, precision, miss, ignores_faces: no_faces, share, output };
+        let named = declared(&channels, scale)?;
+        let declared = Declarations { precision, miss, ignores_faces: no_faces, ..named };
+        let question = Question { pack, candidate, declared, share, output };
         if is_input_pack(&question.pack) {
             of_input(&question)
         } else if is_ray_pack(&question.pack) {

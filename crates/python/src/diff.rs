@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use pyo3::prelude::*;
 use raypencil::Progress;
 use raypencil::diff::{Sides, Thresholds, diff as compare, diff_json, diff_text, rule, write_diff};
-use raypencil::io::{Channels, Limits, add_ray_sets, read_channels};
-use raypencil::judge::{GroundTruth, Recorded, check as judge};
+use raypencil::harness::{Side, read_sides};
+use raypencil::judge::{GroundTruth, check as judge};
 use raypencil::pack::CheckError;
 
+use crate::declared::declared;
 use crate::failure::Failure;
 use crate::judge::precision;
 use crate::scene::SceneCore;
@@ -17,13 +18,15 @@ use crate::watch::watched;
 /// Compares two files or folders: whether they pass, the screen of the command, and its JSON.
 #[pyfunction]
 #[pyo3(signature = (
-    a, b, fail, fail_relative, fail_ulp, fail_percent, hard_fail, shared_only, scene=None, arithmetic="f64",
-    output=None, on_stage=None
+    a, b, channels, scale, fail, fail_relative, fail_ulp, fail_percent, hard_fail, shared_only, scene=None,
+    arithmetic="f64", output=None, on_stage=None
 ))]
 pub(crate) fn diff(
     py: Python<'_>,
     a: PathBuf,
     b: PathBuf,
+    channels: Vec<(String, String)>,
+    scale: Option<f64>,
     fail: f64,
     fail_relative: f64,
     fail_ulp: f64,
@@ -38,12 +41,6 @@ pub(crate) fn diff(
     let precision = precision(arithmetic).map_err(|failure| failure.into_exception(py))?;
     let scene = scene.map(|scene| scene.get().clone());
     watched(py, on_stage, move |watch| {
-        let read = |path: &Path| -> Result<Channels, Failure> {
-            watch.stage(&format!("{}: reading", path.display()));
-            let mut channels = read_channels(path, &Limits::default())?;
-            add_ray_sets(&mut channels, path, &Limits::default())?;
-            Ok(channels)
-        };
         if let Some(folder) = &output {
             let same = |path: &Path| {
                 path.canonicalize().ok().is_some_and(|path| folder.canonicalize().ok() == Some(path))
@@ -55,20 +52,20 @@ pub(crate) fn diff(
                 )));
             }
         }
-        let (of_a, of_b) = (read(&a)?, read(&b)?);
+        let [of_a, of_b] = read_sides([&a, &b], &declared(&channels, scale)?, watch)?;
         let thresholds = Thresholds { fail, fail_relative, fail_ulp, fail_percent, hard_fail, shared_only };
         watch.stage("comparing");
-        let mut difference = compare(&of_a, &of_b, &thresholds)?;
+        let mut difference = compare(&of_a.channels, &of_b.channels, &thresholds)?;
         let names = [&a, &b].map(|path| path.display().to_string());
-        let sides = Sides { names: [&names[0], &names[1]], channels: [&of_a, &of_b] };
+        let sides = Sides { names: [&names[0], &names[1]], channels: [&of_a.channels, &of_b.channels] };
         if let Some(scene) = &scene {
             let scene = &scene.loaded.scene;
             let helped = |error| {
                 let error = CheckError::from(error);
                 Failure::with_help(&error, error.help())
             };
-            let recorded = |path: &Path| Recorded::read(path, scene, precision).map_err(helped);
-            let (of_a, of_b) = (recorded(&a)?, recorded(&b)?);
+            let recorded = |side: &Side| side.recorded(scene, precision).map_err(helped);
+            let (of_a, of_b) = (recorded(&of_a)?, recorded(&of_b)?);
             let truth = GroundTruth::certified(scene, watch);
             let [of_a, of_b] = [of_a, of_b].map(|recorded| judge(&truth, &recorded, watch));
             let rulings = rule(&difference, &sides, &truth, [&of_a, &of_b]);

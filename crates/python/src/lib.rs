@@ -15,6 +15,7 @@
 //! render, validation, pack, check, diff, recording     one file for each call
 //! drive/         a drive, frame by frame
 //! ground         generated terrain
+//! declared       what is declared about a recording, as arguments
 //! picture        a map as PNG
 //! campaign, sweep  shards, made anywhere, and what they give together
 //! command        the command line
@@ -25,6 +26,7 @@ mod campaign;
 mod cast;
 mod check;
 mod command;
+mod declared;
 mod diff;
 mod drive;
 mod failure;

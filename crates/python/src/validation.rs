@@ -9,7 +9,9 @@ use raypencil::harness::{
     Candidate, Validation, report_html, summary_json, validate as run, whole_screen, write_validation,
 };
 use raypencil::judge::JudgeShare;
+use raypencil::pack::Declarations;
 
+use crate::declared::declared;
 use crate::failure::Failure;
 use crate::maps::{into_dict, sensor_arrays};
 use crate::render::{contenders, renderer_words};
@@ -60,7 +62,10 @@ impl ValidationCore {
 
 /// Validates a scene. With `output` the folder of the command is written, too.
 #[pyfunction]
-#[pyo3(signature = (scene, names, switches, judge_all, candidates, allow_empty, output=None, on_stage=None))]
+#[pyo3(signature = (
+    scene, names, switches, judge_all, candidates, channels, scale, allow_empty, output=None, on_stage=None
+))]
+#[allow(clippy::too_many_arguments, reason = "the arguments of a Python function by their names")]
 pub(crate) fn validate(
     py: Python<'_>,
     scene: &SceneCore,
@@ -68,6 +73,8 @@ pub(crate) fn validate(
     switches: Vec<(String, String)>,
     judge_all: bool,
     candidates: Vec<PathBuf>,
+    channels: Vec<(String, String)>,
+    scale: Option<f64>,
     allow_empty: bool,
     output: Option<PathBuf>,
     on_stage: Option<&Bound<'_, PyAny>>,
@@ -80,10 +87,16 @@ pub(crate) fn validate(
         let contenders = contenders(&names, &switches)?;
         let subject = scene.subject(&renderer_words(&names, &switches, &["scanline", "tracer"]));
         // Candidates first, so that an error in their files is reported before the rendering.
-        let candidates: Vec<Candidate> = candidates
-            .iter()
-            .map(|folder| Candidate::read(folder, &subject.scene))
-            .collect::<Result<_, _>>()?;
+        let declared = declared(&channels, scale)?;
+        if candidates.is_empty() && declared != Declarations::default() {
+            let text = "channels, scale: there is no candidate that they concern; expected candidates";
+            return Err(Failure::new(text));
+        }
+        let read = |folder: &PathBuf| {
+            Candidate::read_as(folder, &subject.scene, &declared)
+                .map_err(|error| Failure::with_help(&error, error.help()))
+        };
+        let candidates: Vec<Candidate> = candidates.iter().map(read).collect::<Result<_, _>>()?;
         let share = if judge_all { JudgeShare::All } else { JudgeShare::Sample };
         let mut validation = run(subject, &contenders, share, watch);
         validation.allow_empty = allow_empty;

@@ -142,6 +142,38 @@ def test_what_is_wrong_is_named(answers: Any, options: dict[str, Any], words: st
         check(HARD, answers, **options)
 
 
+def test_channels_of_other_names_and_depths_of_16_bits(tmp_path: Path, command: Command) -> None:
+    depth = np.load(HARD / "camera/depth.Z.npy")
+    millimetres = np.where(np.isfinite(depth), np.rint(depth * 1000), 0).astype(np.uint16)
+    arrays = {"camera/z16": millimetres}
+    result = check(HARD, arrays, channels={"depth.Z": "z16"}, scale=0.001)
+    assert result and "agree to steps of 0.001 m" in result.text
+    with pytest.raises(RaypencilError, match="holds no channel of this scene(.|\n)*channels"):
+        check(HARD, arrays)
+    with pytest.raises(RaypencilError, match="whole numbers; expected floating-point numbers(.|\n)*--scale"):
+        check(HARD, arrays, channels={"depth.Z": "z16"})
+    with pytest.raises(RaypencilError, match="scale is -1"):
+        check(HARD, arrays, scale=-1)
+    # The folder remembers it, for reading and comparing, too.
+    (tmp_path / "mine/camera").mkdir(parents=True)
+    np.save(tmp_path / "mine/camera/z16.npy", millimetres)
+    note = {"format": 1, "program": "mine", "arithmetic": "f64", "channels": {"depth.Z": "z16"}, "scale": 0.001}
+    (tmp_path / "mine/candidate.json").write_text(json.dumps(note))
+    assert check(HARD, tmp_path / "mine").passes
+    read = raypencil.read(tmp_path / "mine")["camera/depth.Z"]
+    assert read.dtype == float and np.array_equal(np.isinf(read), np.isinf(depth))
+    assert raypencil.diff(tmp_path / "mine", HARD, shared_only=True, fail=0.000501).passes
+    result = raypencil.validate(HARD / "scene.toml", candidates=[tmp_path / "mine"])
+    assert result.passes
+
+
+@pytest.mark.parametrize("format", ["exr-each", "npz", "zarr"])
+def test_every_format_is_read(format: str, tmp_path: Path, command: Command) -> None:
+    command("render", HARD / "scene.toml", "--with", "tracer", "--format", format, "-o", "maps")
+    assert check(HARD, tmp_path / "maps").passes
+    assert "beam-0/visible.V" in raypencil.read(tmp_path / "maps")
+
+
 def test_a_pack_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError, match="nowhere"):
         check(tmp_path / "nowhere", {"t": np.zeros(1)})

@@ -15,7 +15,7 @@
 //! 6. `digest`: SHA-256 of a scene's numbers;
 //! 7. `settings`: keys given outside of the file; `file_warnings`, `scene_source`, `overrides`, `ground`, `load`: from a name or path to a [`LoadedScene`].
 //!
-//! `parse/rays` reads tables `[[rays]]` into named ray sets, `ray_sets` a file that has nothing else, `ray_scene` a scene of
+//! `parse/rays` reads tables `[[rays]]` into named ray sets, with poses from files (`trajectory`), `ray_sets` a file that has nothing else, `ray_scene` a scene of
 //! them without a camera.
 //!
 //! `subject` stands alone: a scene under test, and the commands that show it.
@@ -57,6 +57,7 @@ mod scene_source;
 mod settings;
 mod subject;
 mod toml_problem;
+mod trajectory;
 
 /// A scene file with every key and what it means: the default rig on the built-in pyramids.
 ///
@@ -84,6 +85,7 @@ pub use scene_source::{MESH_ENDINGS, SceneSource};
 pub use settings::Setting;
 pub use subject::{Subject, probe_command, quoted};
 pub use toml_problem::TomlProblem;
+pub use trajectory::{MAX_TRAJECTORY_BYTES, poses_from_text};
 
 /// The README's example, compiled.
 #[cfg(doctest)]

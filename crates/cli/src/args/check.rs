@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use raypencil::Precision;
 
+use crate::args::declared::DeclaredArguments;
 use crate::parsers::{number, precision};
 
 #[derive(Debug, Args)]
@@ -12,13 +13,18 @@ use crate::parsers::{number, precision};
   # Embree's recording, which was computed in single precision.
   raypencil check data/packs/pyramids data/candidates/embree/pyramids --arithmetic f32
   # Your renderer's files, with a report.
-  raypencil check data/packs/hard my-renders -o out/check")]
+  raypencil check data/packs/hard my-renders -o out/check
+  # A camera.exr of Blender.
+  raypencil check data/packs/pyramids my-renders --channel depth.Z=ViewLayer.Depth.Z --miss 1e10
+  # A depth image of 16 bits in millimetres, camera/depth.Z.png.
+  raypencil check data/packs/pyramids my-depths --scale 0.001")]
 pub(crate) struct Check {
     /// Folder of the reference pack, with its manifest.json, of an input pack, or of a pack of rays.
     #[arg(value_name = "PACK")]
     pub(crate) pack: PathBuf,
 
-    /// Folder of the answers to check: EXR, NPY or PFM files, named as docs/formats/files.md says. For an input pack:
+    /// Folder of the answers to check: EXR, NPY, NPZ, PFM, PNG or TIFF files or a Zarr store, named as docs/formats/files.md
+    /// says, or as --channel declares. For an input pack:
     /// triangles.npy, and reflectivity.npy if there is one. For a pack of rays: arrays as `cast` writes them.
     #[arg(value_name = "CANDIDATE")]
     pub(crate) candidate: PathBuf,
@@ -28,14 +34,18 @@ pub(crate) struct Check {
     #[arg(long, value_name = "ARITHMETIC", value_parser = precision())]
     pub(crate) arithmetic: Option<Precision>,
 
-    /// Number that means "no hit" in every channel of numbers, such as 0, -1 or nan. Numbers that are not finite, and
-    /// faces of -1 or 4294967295, always do; but of rays of a set, -Inf says that what is hit is too near for the sensor.
+    /// Number that means "no hit" in every channel of numbers, such as 0, -1 or nan; of whole numbers with --scale, as the file
+    /// has it. Numbers that are not finite, and faces of -1 or 4294967295, always do; but of rays of a set, -Inf says that what is
+    /// hit is too near for the sensor.
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true, value_parser = number)]
     pub(crate) miss: Option<f64>,
 
     /// Leave out the channel of faces, face.I.
     #[arg(long)]
     pub(crate) no_faces: bool,
+
+    #[command(flatten)]
+    pub(crate) declared: DeclaredArguments,
 
     /// Compare every answer of the pack with the referee's; without it a sample, and each by which a ray is wrong.
     #[arg(long)]

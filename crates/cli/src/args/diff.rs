@@ -6,12 +6,15 @@ use clap::Args;
 use raypencil::Precision;
 use raypencil::io::Setting;
 
+use crate::args::declared::DeclaredArguments;
 use crate::parsers::{percent, precision, setting, threshold};
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   # Two recordings, with 1 nm of tolerance.
   raypencil diff out/pyramids/scanline out/pyramids/tracer --fail 1e-9
+  # A depth image of a simulator against our depths: the option concerns the side that has such a channel.
+  raypencil diff depth.tif out/maps --channel camera/depth.Z=depth --fail 1e-3 --shared-only
   # The referee rules where they differ.
   raypencil diff theirs ours --scene ground.glb -o out/diff")]
 pub(crate) struct Diff {
@@ -47,6 +50,9 @@ pub(crate) struct Diff {
     /// Ignore channels that only one side has.
     #[arg(long)]
     pub(crate) shared_only: bool,
+
+    #[command(flatten)]
+    pub(crate) declared: DeclaredArguments,
 
     /// The scene of both recordings. The referee then rules on each cell that differs by more than is allowed, and a
     /// channel fails only if a side is wrong. A built-in terrain, a scene .toml, a terrain (.glb, .gltf,

@@ -7,6 +7,7 @@ mod campaign;
 mod cast;
 mod check;
 mod completions;
+mod declared;
 mod diff;
 mod drive;
 mod everywhere;
@@ -31,6 +32,7 @@ pub(crate) use campaign::{Campaign, CampaignCommand, CampaignMerge, CampaignRepl
 pub(crate) use cast::Cast;
 pub(crate) use check::Check;
 pub(crate) use completions::Completions;
+pub(crate) use declared::DeclaredArguments;
 pub(crate) use diff::Diff;
 pub(crate) use drive::Drive;
 pub(crate) use everywhere::Everywhere;

@@ -16,7 +16,9 @@ use crate::parsers;
   # A pack to pass on.
   raypencil pack facets --pack-version 1.0.0 --licence CC0-1.0 -o out/shared
   # Rays of your own on a mesh.
-  raypencil pack data/rays/cube.obj --rays data/rays/cube.npy -o out/cube-pack")]
+  raypencil pack data/rays/cube.obj --rays data/rays/cube.npy -o out/cube-pack
+  # Those of a LiDAR.
+  raypencil pack data/rays/cube.obj --rays data/rays/vlp16.toml -o out/vlp16-pack")]
 pub(crate) struct Pack {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
@@ -34,7 +36,8 @@ pub(crate) struct Pack {
     #[arg(long, conflicts_with_all = ["blind", "no_bench", "scene", "fan", "thickness", "flux", "at", "heading", "settings"])]
     pub(crate) input: bool,
 
-    /// Write a pack of rays: SCENE is a mesh, and these are rays on it, both as `cast` takes them.
+    /// Write a pack of rays: SCENE is a mesh, and these are rays on it: NPY, CSV, or a .toml with patterns. Of several patterns
+    /// each is a pack of its own, in DIR/NAME.
     #[arg(
         long,
         value_name = "RAYS",

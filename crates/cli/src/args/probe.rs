@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::args::declared::DeclaredArguments;
 use crate::args::renderers::{DEFAULT_WITH, SwitchArguments};
 use crate::args::scene::SceneArguments;
 use crate::parsers::pair;
@@ -37,6 +38,9 @@ pub(crate) struct Probe {
     /// Folder with another program's answers to this scene, to be asked beside the renderers. May be repeated.
     #[arg(long = "candidate", value_name = "DIR")]
     pub(crate) candidates: Vec<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) declared: DeclaredArguments,
 
     #[command(flatten)]
     pub(crate) switches: SwitchArguments,

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use raypencil::judge::JudgeShare;
 
+use crate::args::declared::DeclaredArguments;
 use crate::args::renderers::{DEFAULT_WITH, SwitchArguments};
 use crate::args::scene::SceneArguments;
 use crate::parsers::judge_share;
@@ -35,6 +36,9 @@ pub(crate) struct Validate {
     /// Folder with another program's answers to this scene, to be checked beside the renderers. May be repeated.
     #[arg(long = "candidate", value_name = "DIR")]
     pub(crate) candidates: Vec<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) declared: DeclaredArguments,
 
     /// Whether a wrong candidate makes the exit code 1. With `=false` the reports still call it wrong.
     #[arg(
@@ -74,6 +78,7 @@ impl Validate {
             switches: SwitchArguments::default(),
             judge: JudgeShare::Sample,
             candidates: Vec::new(),
+            declared: DeclaredArguments::default(),
             candidates_must_pass: true,
             allow_empty: false,
             output: None,

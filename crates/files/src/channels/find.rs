@@ -5,14 +5,30 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Fault, FileError};
+use crate::zarr::is_zarr;
 
 /// Format of a file by the ending of its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum FileFormat {
     Exr,
     Npy,
+    Npz,
     Pfm,
+    Png,
+    Tiff,
+    /// A folder.
+    Zarr,
 }
+
+impl FileFormat {
+    /// Whether other programs also write it as a picture for people.
+    pub fn is_picture(self) -> bool {
+        matches!(self, Self::Png | Self::Tiff)
+    }
+}
+
+/// The formats, for messages.
+const ENDINGS: &str = ".exr, .npy, .npz, .pfm, .png or .tif";
 
 /// A file that is to be read.
 #[derive(Debug)]
@@ -20,7 +36,7 @@ pub(super) struct RecordingFile {
     pub path: PathBuf,
     pub format: FileFormat,
     /// Start of its keys: its path in the folder, with `/` and without the ending. `None` for a file that is the
-    /// whole recording.
+    /// whole recording, and for a store, whose groups are folders of their own.
     pub stem: Option<String>,
 }
 
@@ -30,14 +46,19 @@ pub(super) fn recording_files(path: &Path) -> Result<Vec<RecordingFile>, FileErr
     if !fs::metadata(path).map_err(refused)?.is_dir() {
         let Some(format) = format_of(path) else {
             let found = "a file of an unknown kind";
-            let expected = "a folder, or a file that ends in .exr, .npy or .pfm";
+            let expected = format!("a folder, or a file that ends in {ENDINGS}");
             return Err(FileError::recording(path, Fault::new("recording", found, expected)));
         };
         return Ok(vec![RecordingFile { path: path.to_path_buf(), format, stem: None }]);
     }
+    if is_zarr(path) {
+        return Ok(vec![RecordingFile { path: path.to_path_buf(), format: FileFormat::Zarr, stem: None }]);
+    }
     let mut found = Vec::new();
     for entry in entries(path).map_err(refused)? {
-        if entry.is_dir() {
+        if entry.is_dir() && is_zarr(&entry) {
+            found.push(RecordingFile { path: entry, format: FileFormat::Zarr, stem: None });
+        } else if entry.is_dir() {
             let below = entries(&entry).map_err(|error| FileError::io(&entry, "read", error))?;
             let folder = name(&entry);
             let files = below.into_iter().filter(|file| !file.is_dir());
@@ -47,7 +68,8 @@ pub(super) fn recording_files(path: &Path) -> Result<Vec<RecordingFile>, FileErr
         }
     }
     if found.is_empty() {
-        let expected = "at least one .exr, .npy or .pfm file, here or one folder below";
+        let expected =
+            format!("at least one file that ends in {ENDINGS}, here or one folder below, or a .zarr store");
         return Err(FileError::recording(path, Fault::new("folder", "no maps", expected)));
     }
     found.sort_by(|a, b| (&a.stem, &a.path).cmp(&(&b.stem, &b.path)));
@@ -81,7 +103,10 @@ fn format_of(path: &Path) -> Option<FileFormat> {
     match ending.as_str() {
         "exr" => Some(FileFormat::Exr),
         "npy" => Some(FileFormat::Npy),
+        "npz" => Some(FileFormat::Npz),
         "pfm" => Some(FileFormat::Pfm),
+        "png" => Some(FileFormat::Png),
+        "tif" | "tiff" => Some(FileFormat::Tiff),
         _ => None,
     }
 }

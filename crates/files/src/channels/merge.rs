@@ -2,6 +2,7 @@
 
 use crate::channels::channel::Channel;
 use crate::error::{Fault, FileError};
+use crate::values::Values;
 
 /// The finest of `channels`, of which there is at least one, and the others.
 ///
@@ -17,6 +18,16 @@ pub(super) fn merge(key: &str, mut channels: Vec<Channel>) -> Result<(Channel, V
         check_agreement(key, &finest, other)?;
     }
     Ok((finest, coarser))
+}
+
+/// Whether "none" of a channel of whole numbers stands beside a NaN.
+fn is_nothing(a: &Values, b: &Values, index: usize) -> bool {
+    match (a, b) {
+        (Values::Wholes(whole), Values::Reals(real)) | (Values::Reals(real), Values::Wholes(whole)) => {
+            whole.cells()[index] == u32::MAX && real.cells()[index].is_nan()
+        }
+        _ => false,
+    }
 }
 
 /// Refuses `other` if rounding `finest` to its storage cannot give it.
@@ -35,6 +46,7 @@ fn check_agreement(key: &str, finest: &Channel, other: &Channel) -> Result<(), F
         let (fine, coarse) = (finest.values.real(index), other.values.real(index));
         // Equal infinities compare equal. Different whole numbers differ by at least 1, which is their ulp.
         fine == coarse
+            || is_nothing(&finest.values, &other.values, index)
             || fine.is_nan() && coarse.is_nan()
             || (fine - coarse).abs() <= 0.5 * other.storage.ulp(coarse)
     };

@@ -1,19 +1,25 @@
 //! Reads the channels of a file or of a folder, with their keys.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::channels::channel::{Channel, Channels};
+use crate::channels::declared::Declared;
 use crate::channels::find::{self, FileFormat, RecordingFile};
+use crate::channels::found::{self, Found};
 use crate::channels::merge::merge;
 use crate::error::FileError;
-use crate::exr::{Raster, convert, read_exr};
+use crate::exr::read_exr_parts;
 use crate::limits::Limits;
 use crate::npy::read_npy;
+use crate::npz::read_npz;
 use crate::pfm::read_pfm;
-use crate::values::{Array, Storage, Values};
+use crate::png::read_picture_png;
+use crate::tiff::read_picture_tiff;
+use crate::zarr::{ZarrArray, read_zarr};
 
-/// Reads a recording: an `.exr`, `.npy` or `.pfm` file, or all such files of a folder and of the folders just below it.
+/// Reads a recording: a file of one of the formats below, or all such files of a folder and of the folders just below it.
+/// They are `.exr`, `.npy`, `.npz`, `.pfm`, `.png` and `.tif`, and folders that are Zarr stores.
 ///
 /// `docs/formats/files.md` has the rules of keys, components and duplicates. `limits.bytes` holds for all files
 /// together.
@@ -39,7 +45,56 @@ use crate::values::{Array, Storage, Values};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read_channels(path: impl AsRef<Path>, limits: &Limits) -> Result<Channels, FileError> {
-    read_files(find::recording_files(path.as_ref())?, limits)
+    read_channels_as(path, limits, &Declared::default(), None)
+}
+
+/// The same for a recording of which something is declared. Of the pictures in a folder (`.png`, `.tif`), those of which one of
+/// the names in `pictures` or a declared channel speaks are read; without `pictures`, all.
+///
+/// ```
+/// use raypencil_files::{Declared, Limits, create_folder, read_channels_as, write_npy};
+/// use raypencil_scene::Image;
+///
+/// let folder = tempfile::tempdir()?;
+/// create_folder(&folder.path().join("camera"))?;
+/// write_npy(folder.path().join("camera/z16.npy"), &[&Image::from_cells(2, 1, vec![1500_u32, 0])])?;
+///
+/// // The file counts millimetres along the optical axis, and 0 is no reading.
+/// let declared = Declared { channels: vec!["depth.Z=z16".parse()?], scale: Some(0.001), ..Declared::default() };
+/// let channels = read_channels_as(folder.path(), &Limits::default(), &declared, None)?;
+/// let depth = &channels.by_key["camera/depth.Z"];
+/// assert_eq!((depth.values.real(0), depth.values.real(1)), (1.5, f64::INFINITY));
+/// assert_eq!(depth.storage.to_string(), "steps of 0.001 m");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`read_channels`]; a declared channel that is not there, or there more than once, and a scale that concerns no map. The
+/// message lists what is there.
+pub fn read_channels_as(
+    path: impl AsRef<Path>,
+    limits: &Limits,
+    declared: &Declared,
+    pictures: Option<&[String]>,
+) -> Result<Channels, FileError> {
+    let path = path.as_ref();
+    let mut files = find::recording_files(path)?;
+    if let (Some(names), true) = (pictures, path.is_dir()) {
+        files.retain(|file| !file.format.is_picture() || is_spoken_of(file, names, declared));
+    }
+    read_files(files, limits, declared, path)
+}
+
+/// Whether a picture has one of these names, or is declared to be a map.
+fn is_spoken_of(file: &RecordingFile, names: &[String], declared: &Declared) -> bool {
+    let stem = found::array_key(file);
+    let own = stem.rsplit('/').next().unwrap_or(&stem);
+    let is_declared = |channel: &str| {
+        // Of a picture of several components with the component behind it.
+        let end = channel.rsplit('/').next().unwrap_or(channel);
+        end == own || end.rsplit_once('.').is_some_and(|(start, _)| start == own)
+    };
+    names.iter().any(|name| name == own) || declared.channels.iter().any(|one| is_declared(&one.channel))
 }
 
 /// Reads the maps and arrays of a folder that `paths` lists, relative to the folder and with `/`. Paths of other files
@@ -52,23 +107,32 @@ pub fn read_listed_channels<'a>(
     paths: impl IntoIterator<Item = &'a str>,
     limits: &Limits,
 ) -> Result<Channels, FileError> {
-    let files = paths.into_iter().filter_map(|path| find::listed_file(folder.as_ref(), path));
-    read_files(files.collect(), limits)
+    let folder = folder.as_ref();
+    let files = paths.into_iter().filter_map(|path| find::listed_file(folder, path));
+    read_files(files.collect(), limits, &Declared::default(), folder)
 }
 
 /// Reads these files, and puts the channels of each key together.
-fn read_files(files: Vec<RecordingFile>, limits: &Limits) -> Result<Channels, FileError> {
+fn read_files(
+    files: Vec<RecordingFile>,
+    limits: &Limits,
+    declared: &Declared,
+    root: &Path,
+) -> Result<Channels, FileError> {
     let mut channels = Channels::default();
-    let mut read: BTreeMap<String, Vec<Channel>> = BTreeMap::new();
+    let mut found: Vec<Found> = Vec::new();
     let mut left = *limits;
     for file in files {
-        let of_file = read_one_file(&file, &left, &mut channels.attributes)?;
-        let stored: u64 = of_file.iter().map(|(_, channel)| channel.stored_bytes()).sum();
+        let of_file = read_one_file(&file, &left, &mut channels)?;
+        let stored: u64 = of_file.iter().map(|one| one.channel.stored_bytes()).sum();
         left.bytes = left.bytes.saturating_sub(stored);
-        for (key, channel) in of_file {
-            read.entry(key).or_default().push(channel);
-        }
+        found.extend(of_file);
         channels.files.push(file.path);
+    }
+    channels.used = declared.apply(&mut found, root)?;
+    let mut read: BTreeMap<String, Vec<Channel>> = BTreeMap::new();
+    for Found { key, channel, .. } in found {
+        read.entry(key).or_default().push(channel);
     }
     for (key, several) in read {
         let (finest, coarser) = merge(&key, several)?;
@@ -82,51 +146,36 @@ fn read_files(files: Vec<RecordingFile>, limits: &Limits) -> Result<Channels, Fi
 fn read_one_file(
     file: &RecordingFile,
     limits: &Limits,
-    attributes: &mut BTreeMap<PathBuf, BTreeMap<String, String>>,
-) -> Result<Vec<(String, Channel)>, FileError> {
+    channels: &mut Channels,
+) -> Result<Vec<Found>, FileError> {
+    let path = &file.path;
     let array = match file.format {
         FileFormat::Exr => {
-            let map = read_exr(&file.path, limits)?;
-            let halves = map.halves;
-            attributes.insert(file.path.clone(), map.attributes);
-            let channel = |(name, raster): (String, Raster)| {
-                let (storage, values) = match raster {
-                    Raster::U32(image) => (Storage::Whole, Values::Wholes(image)),
-                    Raster::F32(image) => {
-                        let storage = if halves.contains(&name) { Storage::F16 } else { Storage::F32 };
-                        (storage, Values::Reals(convert(&image, f64::from)))
-                    }
-                };
-                let key = match &file.stem {
-                    Some(stem) => format!("{stem}/{name}"),
-                    None => name.clone(),
-                };
-                (key, Channel { file: file.path.clone(), name, storage, values })
-            };
-            return Ok(map.channels.into_iter().map(channel).collect());
+            let parts = read_exr_parts(path, limits)?;
+            let texts = parts.iter().flat_map(|part| part.map.attributes.clone());
+            channels.attributes.insert(path.clone(), texts.collect());
+            return Ok(found::of_exr(file, parts));
         }
-        FileFormat::Npy => read_npy(&file.path, limits)?,
-        FileFormat::Pfm => read_pfm(&file.path, limits)?,
+        FileFormat::Npz => {
+            let arrays = read_npz(path, limits)?;
+            let found = arrays.into_iter().flat_map(|(name, array)| {
+                let key = file.stem.as_ref().map_or(name.clone(), |stem| format!("{stem}/{name}"));
+                found::of_array(&key, path, array)
+            });
+            return Ok(found.collect());
+        }
+        FileFormat::Zarr => {
+            let arrays = read_zarr(path, limits)?;
+            let found = arrays.into_iter().flat_map(|ZarrArray { path, group, name, array }| {
+                let key = if group.is_empty() { name } else { format!("{group}/{name}") };
+                found::of_array(&key, &path, array)
+            });
+            return Ok(found.collect());
+        }
+        FileFormat::Npy => read_npy(path, limits)?,
+        FileFormat::Pfm => read_pfm(path, limits)?,
+        FileFormat::Png => read_picture_png(path, limits)?,
+        FileFormat::Tiff => read_picture_tiff(path, limits)?,
     };
-    let stem = match &file.stem {
-        Some(stem) => stem.clone(),
-        None => find::stem(&file.path),
-    };
-    let Array { storage, planes } = array;
-    let count = planes.len();
-    let channel = |(index, values)| {
-        let name = component(index, count);
-        let key = if name.is_empty() { stem.clone() } else { format!("{stem}.{name}") };
-        (key, Channel { file: file.path.clone(), name, storage, values })
-    };
-    Ok(planes.into_iter().enumerate().map(channel).collect())
-}
-
-/// Name of a component: empty if it is the only one; X, Y, Z if there are two or three; else its number.
-fn component(index: usize, count: usize) -> String {
-    match count {
-        1 => String::new(),
-        2 | 3 => ["X", "Y", "Z"][index].to_string(),
-        _ => index.to_string(),
-    }
+    Ok(found::of_array(&found::array_key(file), path, array))
 }

@@ -8,7 +8,7 @@ use exr::block::chunk::{CompressedBlock, TileCoordinates};
 use exr::meta::header::Header;
 
 use crate::error::Fault;
-use crate::limits::{MAX_EXR_ATTRIBUTES, MAX_EXR_CHANNELS, MAX_EXR_HEADER_BYTES};
+use crate::limits::{MAX_EXR_ATTRIBUTES, MAX_EXR_CHANNELS, MAX_EXR_HEADER_BYTES, MAX_EXR_PARTS};
 
 /// First bytes of every OpenEXR file.
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -19,8 +19,8 @@ const DEEP_DATA_FLAG: u8 = 1 << 3;
 /// Bit of several parts in the second byte of the version.
 const SEVERAL_PARTS_FLAG: u8 = 1 << 4;
 
-/// Refuses a file with the flag of deep data, a window that ends before it starts, and a header that takes much memory: too
-/// many bytes, attributes or channels, or a second part.
+/// Refuses a file with the flag of deep data, a window that ends before it starts, and headers that take much memory: too
+/// many bytes, attributes, channels or parts.
 ///
 /// The crate looks only at the type of the part for deep data, swaps the ends of such a window, and reads all parts and all
 /// attributes, each of which takes over a kilobyte. It reports all other faults of the header itself. Nothing is allocated
@@ -33,32 +33,41 @@ pub(super) fn check_attributes(file: &[u8]) -> Result<(), Fault> {
     if flags & DEEP_DATA_FLAG != 0 {
         return Err(Fault::new("header", "the flag of deep data", "one sample a cell"));
     }
+    let has_parts = flags & SEVERAL_PARTS_FLAG != 0;
     let start = file.get(8..).unwrap_or_default();
     let mut rest = start;
-    for count in 0.. {
-        let Some((attribute, after)) = Attribute::first(rest) else { break };
-        let bytes = start.len() - after.len();
-        for (found, limit, what) in
-            [(count + 1, MAX_EXR_ATTRIBUTES, "attributes"), (bytes, MAX_EXR_HEADER_BYTES, "bytes")]
-        {
-            if found > limit {
-                let found = format!("{found} {what} or more");
-                return Err(Fault::new("header", found, format!("at most {limit}")));
+    let (mut attributes, mut channels) = (0, 0);
+    for parts in 1.. {
+        while let Some((attribute, after)) = Attribute::first(rest) {
+            attributes += 1;
+            let bytes = start.len() - after.len();
+            for (found, limit, what) in
+                [(attributes, MAX_EXR_ATTRIBUTES, "attributes"), (bytes, MAX_EXR_HEADER_BYTES, "bytes")]
+            {
+                if found > limit {
+                    let found = format!("{found} {what} or more");
+                    return Err(Fault::new("header", found, format!("at most {limit}")));
+                }
             }
+            check_attribute(&attribute, &mut channels)?;
+            rest = after;
         }
-        check_attribute(&attribute)?;
+        // A header ends with a byte 0. Behind the last of several stands another one.
+        let Some((0, after)) = rest.split_first() else { break };
         rest = after;
-    }
-    if rest.first() == Some(&0)
-        && flags & SEVERAL_PARTS_FLAG != 0
-        && rest.get(1).is_some_and(|&byte| byte != 0)
-    {
-        return Err(Fault::new("header", "several parts", "one part: split multi-part files first"));
+        if !has_parts || rest.first().is_none_or(|&byte| byte == 0) {
+            break;
+        }
+        if parts == MAX_EXR_PARTS {
+            let found = format!("{} parts or more", parts + 1);
+            return Err(Fault::new("header", found, format!("at most {MAX_EXR_PARTS}")));
+        }
     }
     Ok(())
 }
 
-fn check_attribute(attribute: &Attribute) -> Result<(), Fault> {
+/// Refuses a window that ends before it starts; counts the channels of all parts.
+fn check_attribute(attribute: &Attribute, channels: &mut usize) -> Result<(), Fault> {
     match attribute.kind {
         b"box2i" => {
             if let Some(&[x0, y0, x1, y1]) = little_endian_words(attribute.value).first_chunk()
@@ -71,12 +80,10 @@ fn check_attribute(attribute: &Attribute) -> Result<(), Fault> {
         }
         b"chlist" => {
             let mut rest = attribute.value;
-            for count in 0.. {
-                let Some((_, after)) = null_terminated(rest).filter(|(name, _)| !name.is_empty()) else {
-                    break;
-                };
-                if count == MAX_EXR_CHANNELS {
-                    let found = format!("{} channels or more", count + 1);
+            while let Some((_, after)) = null_terminated(rest).filter(|(name, _)| !name.is_empty()) {
+                *channels += 1;
+                if *channels > MAX_EXR_CHANNELS {
+                    let found = format!("{channels} channels or more");
                     return Err(Fault::new("header", found, format!("at most {MAX_EXR_CHANNELS}")));
                 }
                 // Type, a flag and three bytes, and the sampling along two axes.
@@ -119,25 +126,34 @@ fn little_endian_words(bytes: &[u8]) -> Vec<i32> {
 /// Refuses blocks that do not cover every part of the image exactly once.
 ///
 /// The crate only counts them. Two blocks of one place leave another place unset, which would then read as 0.
-pub(super) fn check_blocks(file: &[u8], header: &Header) -> Result<(), Fault> {
+pub(super) fn check_blocks(file: &[u8], headers: &[Header]) -> Result<(), Fault> {
     let invalid = |error: exr::error::Error| {
         Fault::new("pixels", error.to_string(), "an OpenEXR file that is complete")
     };
-    let first_line = i64::from(header.own_attributes.layer_position.y());
-    let lines = header.compression.scan_lines_per_block() as i64;
     let key = |at: TileCoordinates| [at.level_index.1, at.level_index.0, at.tile_index.1, at.tile_index.0];
-    let mut missing: BTreeSet<_> =
-        header.blocks_increasing_y_order().map(|tile| key(tile.location)).collect();
-    // In the order of the offset table, in which the pixels are read.
+    let mut missing: Vec<BTreeSet<_>> = headers
+        .iter()
+        .map(|header| header.blocks_increasing_y_order().map(|tile| key(tile.location)).collect())
+        .collect();
+    // In the order of the offset tables, in which the pixels are read.
     let blocks = exr::block::read(Cursor::new(file), false)
         .and_then(|reader| reader.filter_chunks(true, |_, _, _| true))
         .map_err(invalid)?;
     for (index, block) in blocks.enumerate() {
-        let block = block.map_err(invalid)?.compressed_block;
+        let block = block.map_err(invalid)?;
+        let part = block.layer_index;
+        let (Some(header), Some(missing)) = (headers.get(part), missing.get_mut(part)) else {
+            let found = format!("of part {part}");
+            return Err(Fault::new(format!("pixels, block {index}"), found, "a part of the file"));
+        };
+        let block = block.compressed_block;
         let at = header.get_block_data_indices(&block).map_err(invalid)?;
+        let lines = header.compression.scan_lines_per_block() as i64;
         // The crate rounds a block's line down to a multiple of its height.
         let line = match &block {
-            CompressedBlock::ScanLine(block) => i64::from(block.y_coordinate) - first_line,
+            CompressedBlock::ScanLine(block) => {
+                i64::from(block.y_coordinate) - i64::from(header.own_attributes.layer_position.y())
+            }
             _ => 0,
         };
         if line % lines != 0 || !missing.remove(&key(at)) {
@@ -150,6 +166,10 @@ pub(super) fn check_blocks(file: &[u8], header: &Header) -> Result<(), Fault> {
             };
             return Err(Fault::new(format!("pixels, block {index}"), found, "each part of the image once"));
         }
+    }
+    if let Some(part) = missing.iter().position(|missing| !missing.is_empty()) {
+        let found = format!("{} blocks too few in part {part}", missing[part].len());
+        return Err(Fault::new("pixels", found, "each part of the image once"));
     }
     Ok(())
 }

@@ -8,7 +8,7 @@ use exr::image::FlatSamples;
 use exr::image::read::image::ReadLayers;
 use exr::image::read::layers::ReadChannels;
 use exr::math::Vec2;
-use exr::meta::attribute::AttributeValue;
+use exr::meta::attribute::{AttributeValue, Text};
 use exr::meta::header::Header;
 use exr::prelude::Compression;
 use raypencil_scene::Image;
@@ -21,8 +21,8 @@ use crate::limits::{Limits, MAX_EXPANSION, MAX_INFLATED_BYTES};
 
 /// Reads all channels of an OpenEXR file with one part.
 ///
-/// Scan lines and tiles are read, and the largest of several resolutions. Several parts, deep data, subsampled channels
-/// and lossy compression are refused.
+/// Scan lines and tiles are read, and the largest of several resolutions. Several parts ([`read_exr_parts`] reads them), deep
+/// data, subsampled channels and lossy compression are refused.
 ///
 /// Limits beside `limits`, held before anything is decoded: [`MAX_EXR_ATTRIBUTES`](crate::MAX_EXR_ATTRIBUTES),
 /// [`MAX_EXR_CHANNELS`](crate::MAX_EXR_CHANNELS) and [`MAX_EXR_HEADER_BYTES`](crate::MAX_EXR_HEADER_BYTES) of the header; all
@@ -33,9 +33,7 @@ use crate::limits::{Limits, MAX_EXPANSION, MAX_INFLATED_BYTES};
 /// Names the file, the channel or other place in it, what was found and what was expected.
 pub fn read_exr(path: impl AsRef<Path>, limits: &Limits) -> Result<ExrMap, FileError> {
     let path = path.as_ref();
-    // A file larger than the limit of its decompressed data holds something else.
-    let bytes = bytes::read_file(path, limits.bytes).map_err(|error| FileError::io(path, "read", error))?;
-    exr_from_bytes(&bytes, path, limits)
+    exr_from_bytes(&file_bytes(path, limits)?, path, limits)
 }
 
 /// Reads the bytes of an OpenEXR file as [`read_exr`] does; `file` is its name in messages.
@@ -43,10 +41,50 @@ pub fn read_exr(path: impl AsRef<Path>, limits: &Limits) -> Result<ExrMap, FileE
 /// # Errors
 /// As [`read_exr`].
 pub fn exr_from_bytes(bytes: &[u8], file: &Path, limits: &Limits) -> Result<ExrMap, FileError> {
+    let mut parts = exr_parts_from_bytes(bytes, file, limits)?;
+    match (parts.pop(), parts.len()) {
+        (Some(part), 0) => Ok(part.map),
+        (_, others) => {
+            let fault = Fault::new("header", format!("{} parts", others + 1), "one part");
+            Err(FileError::Exr(fault.in_file(file)))
+        }
+    }
+}
+
+/// Reads all parts of an OpenEXR file, at most [`MAX_EXR_PARTS`](crate::MAX_EXR_PARTS). Each may have a size of its own.
+///
+/// # Errors
+/// As [`read_exr`]; two parts of one name.
+pub fn read_exr_parts(path: impl AsRef<Path>, limits: &Limits) -> Result<Vec<ExrPart>, FileError> {
+    let path = path.as_ref();
+    exr_parts_from_bytes(&file_bytes(path, limits)?, path, limits)
+}
+
+/// Reads the bytes of an OpenEXR file as [`read_exr_parts`] does; `file` is its name in messages.
+///
+/// # Errors
+/// As [`read_exr_parts`].
+pub fn exr_parts_from_bytes(bytes: &[u8], file: &Path, limits: &Limits) -> Result<Vec<ExrPart>, FileError> {
     decode(bytes, limits).map_err(|fault| FileError::Exr(fault.in_file(file)))
 }
 
-fn decode(file: &[u8], limits: &Limits) -> Result<ExrMap, Fault> {
+/// A part of an OpenEXR file.
+#[derive(Debug, Clone)]
+pub struct ExrPart {
+    /// Its name; empty if the file has only one.
+    pub name: String,
+    /// The eye or camera that it says to be of; empty if it says nothing.
+    pub view: String,
+    /// Its channels.
+    pub map: ExrMap,
+}
+
+fn file_bytes(path: &Path, limits: &Limits) -> Result<Vec<u8>, FileError> {
+    // A file larger than the limit of its decompressed data holds something else.
+    bytes::read_file(path, limits.bytes).map_err(|error| FileError::io(path, "read", error))
+}
+
+fn decode(file: &[u8], limits: &Limits) -> Result<Vec<ExrPart>, Fault> {
     let invalid = |place: &'static str| {
         move |error: exr::error::Error| {
             Fault::new(place, error.to_string(), "an OpenEXR file that is complete")
@@ -55,13 +93,11 @@ fn decode(file: &[u8], limits: &Limits) -> Result<ExrMap, Fault> {
     header::check_attributes(file)?;
     // Only the headers are read here, not the offset tables and the pixels.
     let reader = exr::block::read(Cursor::new(file), false).map_err(invalid("header"))?;
-    let [header] = reader.headers() else {
-        let found = format!("{} parts", reader.headers().len());
-        return Err(Fault::new("header", found, "one part: split multi-part files first"));
-    };
-    check_claims(header, file.len() as u64, limits)?;
-    header::check_blocks(file, header)?;
-    let (width, height) = (header.layer_size.width() as u32, header.layer_size.height() as u32);
+    let mut claimed = Claims::default();
+    for header in reader.headers() {
+        check_claims(header, file.len() as u64, limits, &mut claimed)?;
+    }
+    header::check_blocks(file, reader.headers())?;
 
     let image = exr::image::read::read()
         .no_deep_data()
@@ -76,13 +112,21 @@ fn decode(file: &[u8], limits: &Limits) -> Result<ExrMap, Fault> {
         .from_chunks(reader)
         .map_err(invalid("pixels"))?;
 
-    let mut map = ExrMap::new(width, height);
-    map.attributes = texts(&image.attributes.other);
+    let has_parts = image.layer_data.len() > 1;
+    let mut parts: Vec<ExrPart> = Vec::new();
     for layer in image.layer_data {
+        let text = |text: &Option<Text>| text.as_ref().map(Text::to_string).unwrap_or_default();
+        let name = if has_parts { text(&layer.attributes.layer_name) } else { String::new() };
+        if parts.iter().any(|other| other.name == name) {
+            return Err(Fault::new(format!("part {name:?}"), "there twice", "each part once"));
+        }
+        let mut map = ExrMap::new(layer.size.width() as u32, layer.size.height() as u32);
+        map.attributes = texts(&image.attributes.other);
         map.attributes.extend(texts(&layer.attributes.other));
-        for part in layer.channel_data.list {
-            let name = part.name.to_string();
-            let raster = match part.sample_data {
+        for of_layer in layer.channel_data.list {
+            let name = of_layer.name.to_string();
+            let (width, height) = (map.width, map.height);
+            let raster = match of_layer.sample_data {
                 FlatSamples::F16(cells) => {
                     map.halves.insert(name.clone());
                     let cells = cells.into_iter().map(|cell| cell.to_f32()).collect();
@@ -95,12 +139,26 @@ fn decode(file: &[u8], limits: &Limits) -> Result<ExrMap, Fault> {
                 return Err(Fault::new(channel(&name), "there twice", "each channel once"));
             }
         }
+        parts.push(ExrPart { name, view: text(&layer.attributes.view_name), map });
     }
-    Ok(map)
+    Ok(parts)
+}
+
+/// What the headers of all parts that were checked claim together.
+#[derive(Default)]
+struct Claims {
+    bytes: u64,
+    doubles: u64,
+    blocks: u64,
 }
 
 /// Refuses a header that claims more than `limits` allow, or more than a file of this length can hold.
-fn check_claims(header: &Header, file_bytes: u64, limits: &Limits) -> Result<(), Fault> {
+fn check_claims(
+    header: &Header,
+    file_bytes: u64,
+    limits: &Limits,
+    claimed: &mut Claims,
+) -> Result<(), Fault> {
     let Vec2(width, height) = header.layer_size;
     let (width, height) = (width as u64, height as u64);
     let refuse =
@@ -131,12 +189,16 @@ fn check_claims(header: &Header, file_bytes: u64, limits: &Limits) -> Result<(),
         }
         bytes_per_cell += description.sample_type.bytes_per_sample() as u64;
     }
-    let bytes = width * height * bytes_per_cell;
+    let bytes_of_part = width * height * bytes_per_cell;
+    claimed.bytes = claimed.bytes.saturating_add(bytes_of_part);
+    let bytes = claimed.bytes;
     if bytes > limits.bytes {
         return Err(Fault::new("channels", format!("{bytes} bytes"), format!("at most {}", limits.bytes)));
     }
     // What a caller makes of the samples: doubles. A small file could otherwise ask for gigabytes.
-    let doubles = (width * height).saturating_mul(8 * header.channels.list.len() as u64);
+    let of_part = (width * height).saturating_mul(8 * header.channels.list.len() as u64);
+    claimed.doubles = claimed.doubles.saturating_add(of_part);
+    let doubles = claimed.doubles;
     if doubles > max_inflated_bytes(file_bytes) {
         let found = format!(
             "{width} x {height} cells of {} channels, {doubles} bytes as doubles, in a file of {file_bytes} bytes",
@@ -147,13 +209,14 @@ fn check_claims(header: &Header, file_bytes: u64, limits: &Limits) -> Result<(),
         return Err(Fault::new("data window", found, expected));
     }
     // Every block takes 8 bytes in the offset table and 8 of its own header.
-    let blocks = header.chunk_count as u64;
+    claimed.blocks = claimed.blocks.saturating_add(header.chunk_count as u64);
+    let blocks = claimed.blocks;
     let Some(expansion) = max_expansion(header.compression) else {
         let expected = "none, RLE, ZIPS, ZIP or PIZ, which keep every bit";
         return Err(Fault::new("header", header.compression.to_string(), expected));
     };
     let max_bytes = expansion.saturating_mul(file_bytes);
-    if blocks.saturating_mul(16) > file_bytes || bytes > max_bytes {
+    if blocks.saturating_mul(16) > file_bytes || bytes_of_part > max_bytes {
         let found =
             format!("{width} x {height} cells of {bytes_per_cell} bytes in a file of {file_bytes} bytes");
         return Err(Fault::new("data window", found, "a size that the file can hold (is it cut off?)"));
@@ -196,9 +259,9 @@ impl std::fmt::Display for Window {
 
 /// Text attributes among `attributes`.
 fn texts<'a>(
-    attributes: impl IntoIterator<Item = (&'a exr::meta::attribute::Text, &'a AttributeValue)>,
+    attributes: impl IntoIterator<Item = (&'a Text, &'a AttributeValue)>,
 ) -> BTreeMap<String, String> {
-    let text = |(name, value): (&exr::meta::attribute::Text, &AttributeValue)| match value {
+    let text = |(name, value): (&Text, &AttributeValue)| match value {
         AttributeValue::Text(text) => Some((name.to_string(), text.to_string())),
         _ => None,
     };

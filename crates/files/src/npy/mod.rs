@@ -11,6 +11,7 @@ mod read;
 mod write;
 
 pub use numbers::{Numbers, npy_numbers_from_bytes, read_npy_numbers};
+pub(crate) use read::raster_from_bytes;
 pub use read::{npy_from_bytes, read_npy};
 pub(crate) use write::header;
 pub use write::{ArrayNumber, write_npy, write_npy_numbers};

@@ -50,9 +50,18 @@ pub fn npy_from_bytes(bytes: &[u8], file: &Path, limits: &Limits) -> Result<Arra
     decode(bytes, limits).map_err(|fault| FileError::Array(fault.in_file(file)))
 }
 
+/// Reads the bytes of an NPY file of shape (rows, columns) or (rows, columns, components); `None` for another shape.
+pub(crate) fn raster_from_bytes(file: &[u8], limits: &Limits) -> Result<Option<Array>, Fault> {
+    let (header, numbers) = header::split(file)?;
+    header.raster().ok().map(|shape| raster(&header, shape, numbers, limits)).transpose()
+}
+
 fn decode(file: &[u8], limits: &Limits) -> Result<Array, Fault> {
     let (header, numbers) = header::split(file)?;
-    let shape = header.raster()?;
+    raster(&header, header.raster()?, numbers, limits)
+}
+
+fn raster(header: &Header, shape: Shape, numbers: &[u8], limits: &Limits) -> Result<Array, Fault> {
     shape.check(header.number.bytes() as u64, numbers.len() as u64, limits)?;
     let storage = match header.number {
         Number::Real(2) => Storage::F16,
@@ -60,7 +69,7 @@ fn decode(file: &[u8], limits: &Limits) -> Result<Array, Fault> {
         Number::Real(_) => Storage::F64,
         _ => Storage::Whole,
     };
-    let planes = (0..shape.components as usize).map(|component| plane(&header, shape, numbers, component));
+    let planes = (0..shape.components as usize).map(|component| plane(header, shape, numbers, component));
     Ok(Array { storage, planes: planes.collect::<Result<_, _>>()? })
 }
 

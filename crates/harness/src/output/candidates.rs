@@ -26,8 +26,8 @@ pub(crate) struct CandidatesSection {
     pub(crate) rows: Vec<QuantityRow>,
     pub(crate) images: Vec<ImageRow>,
     pub(crate) radiance: Vec<RadianceRow>,
-    /// What is stored in half precision, a line for each candidate that does so.
-    pub(crate) halves: Vec<String>,
+    /// What is stored more coarsely than in single precision, a line for each candidate and storage.
+    pub(crate) coarse: Vec<String>,
 }
 
 /// One quantity: a cell for each renderer and candidate.
@@ -126,7 +126,7 @@ pub(crate) fn candidates_section(validation: &Validation) -> CandidatesSection {
         radiance: of_candidates(scoreboard, |report| {
             report.radiance.iter().map(|map| radiance_row(report, map)).collect()
         }),
-        halves: scoreboard.candidates.iter().filter_map(half_precision).collect(),
+        coarse: scoreboard.candidates.iter().flat_map(coarse_storages).collect(),
     }
 }
 
@@ -134,11 +134,16 @@ fn of_candidates<T>(scoreboard: &Scoreboard, rows: impl Fn(&CandidateReport) -> 
     scoreboard.candidates.iter().flat_map(rows).collect()
 }
 
-/// What a candidate stores in half precision; `None` if nothing.
-fn half_precision(report: &CandidateReport) -> Option<String> {
-    let names: Vec<String> = report.candidate.recorded.items_in_half().into_iter().map(name_of).collect();
+/// What a candidate stores more coarsely than in single precision.
+fn coarse_storages(report: &CandidateReport) -> Vec<String> {
     let name = &report.candidate.name;
-    (!names.is_empty()).then(|| format!("{name} stores in half precision: {}", names.join(", ")))
+    let line = |(how, items): (Storage, Vec<Item>)| {
+        let digits = if how == Storage::F16 { " (11 binary digits)" } else { "" };
+        let how = how.coarse_words().unwrap_or_default();
+        let names: Vec<String> = items.into_iter().map(name_of).collect();
+        format!("{name} stores in {how}{digits}: {}", names.join(", "))
+    };
+    report.candidate.recorded.coarse_items().into_iter().map(line).collect()
 }
 
 /// Names, checks and recordings, raypencil's renderers first; these are no recordings.
@@ -156,8 +161,11 @@ fn cell(subject: &Subject, item: Item, tally: &ItemTally, recorded: Option<&Reco
         let absent = not_given(tally).unwrap_or("no ray has it");
         return Cell { absent, ..Cell::default() };
     }
-    let is_half = recorded.and_then(|recorded| recorded.storage_of_item(item)) == Some(Storage::F16);
-    let agree = if is_half { "agree at half precision" } else { "agree" };
+    let storage = recorded.and_then(|recorded| recorded.storage_of_item(item));
+    let agree = match storage.and_then(Storage::coarse_words) {
+        Some(coarse) => format!("agree at {coarse}"),
+        None => "agree".into(),
+    };
     let mut classes = vec![format!("{} {agree}", count(tally.of(Class::Agree)))];
     for (class, word) in [(Class::Tie, "tie"), (Class::Rounding, "rounding")] {
         if tally.of(class) > 0 {
@@ -256,7 +264,10 @@ pub(crate) fn typed(validation: &Validation) -> String {
     let folder = |report: &CandidateReport| quoted(&report.candidate.folder.to_string_lossy());
     let words = validation.candidates().iter().map(|report| format!(" --candidate {}", folder(report)));
     let may_fail = if validation.candidates_may_fail { " --candidates-must-pass=false" } else { "" };
-    words.chain([may_fail.to_string()]).collect()
+    // What is declared concerns all candidates alike.
+    let declared =
+        validation.candidates().first().map_or(String::new(), |one| one.candidate.declared.typed());
+    words.chain([declared, may_fail.to_string()]).collect()
 }
 
 /// Names of what a candidate does not give.
@@ -266,13 +277,13 @@ pub(crate) fn names_not_given(report: &CandidateReport) -> Vec<String> {
 
 /// A candidate in one line: the rays, images and radiance maps that are wrong or fit.
 pub(crate) fn line(report: &CandidateReport) -> String {
-    let is_half = !report.candidate.recorded.items_in_half().is_empty();
+    let coarse = report.candidate.recorded.coarseness();
     let rays = format!(
         "{}: {} of {} rays wrong{}",
         report.candidate.name,
         count(report.wrong_rays()),
         count(report.check.compared()),
-        if is_half { " at half precision" } else { "" }
+        coarse.map_or(String::new(), |coarse| format!(" at {coarse}"))
     );
     let of = |kind: &str, fit: usize, all: usize| (all > 0).then(|| format!("{fit} of {all} {kind}"));
     let images = report.images.len() - report.wrong_images();

@@ -109,10 +109,10 @@ fn candidates_headline(candidates: &[CandidateReport]) -> Option<String> {
     Some(match (candidates, wrong.as_slice()) {
         ([], _) => return None,
         ([one], []) => {
-            let half =
-                if one.candidate.recorded.items_in_half().is_empty() { "" } else { " at half precision" };
+            let coarse = one.candidate.recorded.coarseness();
+            let coarse = coarse.map_or(String::new(), |coarse| format!(" at {coarse}"));
             let rays = counted(one.check.compared(), "ray", "rays");
-            format!("candidate {} agrees on {rays}{half}", name(one))
+            format!("candidate {} agrees on {rays}{coarse}", name(one))
         }
         (all, []) => format!("{} candidates agree", all.len()),
         ([_], [one]) => format!("Candidate {} is wrong on {}", name(one), wrong_parts(one)),

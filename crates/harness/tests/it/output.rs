@@ -392,7 +392,9 @@ fn with_wrong_ranges() -> Validation {
     output.flux.clear();
     let recorded = Recorded::of_output("mine", scene, &output, Precision::F64);
     let (images, radiance) = (Vec::new(), Vec::new());
-    let candidate = Candidate { name: "mine".into(), folder: "mine".into(), recorded, images, radiance };
+    let declared = Default::default();
+    let candidate =
+        Candidate { name: "mine".into(), folder: "mine".into(), declared, recorded, images, radiance };
     validation.evaluate(vec![candidate], &Silent);
     validation
 }

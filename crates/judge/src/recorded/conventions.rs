@@ -1,5 +1,7 @@
 //! Conventions of a recording that may be declared: how it says that nothing is hit, and whether its faces count.
 
+use raypencil_files::Storage;
+
 /// Conventions of a recording that differ from those of `docs/formats/files.md`, as they are declared.
 ///
 /// ```
@@ -23,6 +25,15 @@ pub struct Conventions {
 impl Conventions {
     /// Those of `docs/formats/files.md`.
     pub const STANDARD: Self = Self { miss: None, ignores_faces: false };
+
+    /// Those that hold for numbers that are stored so. Whole numbers that count steps have been read: the declared number was
+    /// one of theirs, and the metres that they became are numbers like others.
+    pub fn of_storage(self, storage: Storage) -> Self {
+        match storage {
+            Storage::Steps(_) => Self { miss: None, ..self },
+            _ => self,
+        }
+    }
 
     /// Whether a number is the declared one for "no hit".
     pub fn means_miss(&self, number: f64) -> bool {

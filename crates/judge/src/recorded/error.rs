@@ -46,12 +46,28 @@ pub enum RecordingError {
         found: String,
     },
     /// A folder without any known channel.
-    #[error("{}: holds no channel of this scene; expected files such as camera.exr or beam-0/range.T.npy with the names of docs/formats/files.md{}", folder.display(), there(unknown))]
+    #[error("{}: holds no channel of this scene; expected files such as camera.exr or beam-0/range.T.npy with the names of docs/formats/files.md (found {there})", folder.display())]
     Nothing {
         /// The folder.
         folder: PathBuf,
-        /// The names that it does hold.
-        unknown: Vec<String>,
+        /// What it does hold: files with their size, and their channels with their types.
+        there: String,
+        /// One of these channels.
+        example: String,
+    },
+    /// A channel that is declared to be a map that the scene does not have.
+    #[error("{}: channel `{channel}`, declared to be {map}: {found}; expected {expected}", folder.display())]
+    Declared {
+        /// The folder.
+        folder: PathBuf,
+        /// The channel.
+        channel: String,
+        /// The map.
+        map: String,
+        /// What was found.
+        found: String,
+        /// What was expected.
+        expected: String,
     },
 }
 
@@ -67,6 +83,11 @@ impl RecordingError {
     pub fn help(&self) -> Option<String> {
         match self {
             Self::Channel { help, .. } => help.as_ref().map(|help| help.words.clone()),
+            Self::Nothing { example, .. } => Some(format!(
+                "say which channel is which map of which sensor: --channel camera/depth.Z={example}, or in candidate.json \
+                 \"channels\": {{\"camera/depth.Z\": \"{example}\"}}. The map's name says what the numbers are, and nothing is \
+                 guessed: depth.Z along the optical axis, range.T along the ray"
+            )),
             _ => None,
         }
     }
@@ -74,11 +95,4 @@ impl RecordingError {
 
 fn at(cell: &Option<(u32, u32)>) -> String {
     cell.map_or(String::new(), |(i, j)| format!(" at {i},{j}"))
-}
-
-fn there(unknown: &[String]) -> String {
-    match unknown {
-        [] => String::new(),
-        some => format!(" (found {})", some[..some.len().min(8)].join(", ")),
-    }
 }

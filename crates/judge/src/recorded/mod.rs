@@ -10,10 +10,12 @@ mod reader;
 use crate::quantity::{Item, Quantity};
 use crate::recorded::conventions::Conventions;
 use crate::recorded::error::RecordingError;
-use crate::recorded::names::is_path_tracer_channel;
+use crate::recorded::names::{is_path_tracer_channel, maps_of};
 use crate::recorded::reader::{Reader, limits, recordings_in};
 use crate::scene_answers::Answers;
-use raypencil_files::{Channels, Storage, harmless_line, read_channels};
+use raypencil_files::{
+    Channels, Declared, DeclaredChannel, Storage, harmless_line, read_channels_as, shortened,
+};
 use raypencil_scene::{HitQuantity, Precision, RenderOutput, Renderer, Request, Scene, SensorId};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -98,15 +100,16 @@ impl Recorded {
         precision: Precision,
         conventions: Conventions,
     ) -> Result<Self, RecordingError> {
-        let channels = Self::channels(folder, scene)?;
-        Self::of_channels_by(name_of_folder(folder), folder, scene, precision, &channels, conventions)
+        let channels = Self::channels(folder, scene, &Declared::default())?;
+        Self::of_folder(folder, scene, precision, &channels, conventions)
     }
 
-    /// Reads the channels of a folder that holds one recording of a scene.
+    /// Reads the channels of a folder that holds one recording of a scene. Of its pictures those are read that have the name of
+    /// a map, or are declared to be one.
     ///
     /// # Errors
-    /// Names the file that cannot be read, or the several recordings that the folder holds.
-    pub fn channels(folder: &Path, scene: &Scene) -> Result<Channels, RecordingError> {
+    /// Names the file that cannot be read, the several recordings that the folder holds, or what is declared and is not so.
+    pub fn channels(folder: &Path, scene: &Scene, declared: &Declared) -> Result<Channels, RecordingError> {
         let several = recordings_in(folder);
         if !several.is_empty() {
             let found = match several.as_slice() {
@@ -115,7 +118,17 @@ impl Recorded {
             };
             return Err(RecordingError::Several { folder: folder.to_path_buf(), found });
         }
-        Ok(read_channels(folder, &limits(scene))?)
+        let maps = scene.sensors().flat_map(|sensor| maps_of(scene, sensor));
+        // A vector is one array: P of P.X.
+        let names: Vec<String> = maps
+            .flat_map(|map| [map.split_once(".X").map_or(map.as_str(), |(start, _)| start).to_string(), map])
+            .collect();
+        let channels = read_channels_as(folder, &limits(scene), declared, Some(&names))?;
+        // Of two recordings that are compared, one may lack what is declared.
+        for one in declared.channels.iter().filter(|one| channels.used.maps.contains(&one.map)) {
+            check_declared(one, folder, scene, &channels)?;
+        }
+        Ok(channels)
     }
 
     /// Takes the channels of a folder as a recording, which has the folder's name.
@@ -127,8 +140,9 @@ impl Recorded {
         scene: &Scene,
         precision: Precision,
         channels: &Channels,
+        conventions: Conventions,
     ) -> Result<Self, RecordingError> {
-        Self::of_channels(name_of_folder(folder), folder, scene, precision, channels)
+        Self::of_channels_by(name_of_folder(folder), folder, scene, precision, channels, conventions)
     }
 
     /// The output of a renderer of this project, as computed, as a recording in f64.
@@ -168,17 +182,25 @@ impl Recorded {
         stored.map(|(_, storage)| *storage).min()
     }
 
-    /// Items that are stored in half precision for at least one sensor: they agree to 11 binary digits at most.
-    pub fn items_in_half(&self) -> Vec<Item> {
-        let mut items: Vec<Item> = self
-            .storage
-            .iter()
-            .filter(|(_, how)| **how == Storage::F16)
-            .map(|((_, item), _)| *item)
-            .collect();
-        items.sort();
-        items.dedup();
+    /// Items that are stored more coarsely than in single precision for at least one sensor, by their storage: none of them
+    /// agrees exactly.
+    pub fn coarse_items(&self) -> BTreeMap<Storage, Vec<Item>> {
+        let mut items: BTreeMap<Storage, Vec<Item>> = BTreeMap::new();
+        for ((_, item), how) in self.storage.iter().filter(|(_, how)| how.coarse_words().is_some()) {
+            items.entry(*how).or_default().push(*item);
+        }
+        for of_storage in items.values_mut() {
+            of_storage.sort();
+            of_storage.dedup();
+        }
         items
+    }
+
+    /// How coarsely the coarsest are stored, in words: `half precision`, `steps of 0.001 m`; `None` if all are finer.
+    pub fn coarseness(&self) -> Option<String> {
+        let words: Vec<String> =
+            self.coarse_items().keys().rev().filter_map(|how| how.coarse_words()).collect();
+        (!words.is_empty()).then(|| words.join(" and "))
     }
 
     /// Takes channels as a recording of this name; `folder` is for messages.
@@ -229,10 +251,56 @@ impl Recorded {
         let unknown: Vec<String> =
             channels.by_key.keys().filter(|key| !used.contains(*key) && !is_known(key)).cloned().collect();
         if storage.is_empty() {
-            return Err(RecordingError::Nothing { folder: folder.to_path_buf(), unknown });
+            let names: Vec<&str> =
+                channels.by_key.iter().map(|(key, channel)| channel.name_in_file(key)).collect();
+            // Only an example of what can be typed; the channel of a likely name, if there is one.
+            let is_likely =
+                |name: &&&str| ["depth", "range"].iter().any(|word| name.to_lowercase().contains(word));
+            let example = names.iter().find(is_likely).or(names.first()).unwrap_or(&"CHANNEL").to_string();
+            let there = shortened(channels.inventory(folder));
+            return Err(RecordingError::Nothing { folder: folder.to_path_buf(), there, example });
         }
         Ok(Self { name, answers, storage, unknown, precision })
     }
+}
+
+/// Refuses a declared map that no sensor of the scene has, and a channel whose file does not say of which sensor it is.
+fn check_declared(
+    DeclaredChannel { map, channel }: &DeclaredChannel,
+    folder: &Path,
+    scene: &Scene,
+    channels: &Channels,
+) -> Result<(), RecordingError> {
+    let refuse = |found: String, expected: String| {
+        let (folder, channel, map) = (folder.to_path_buf(), channel.clone(), map.clone());
+        Err(RecordingError::Declared { folder, channel, map, found, expected: shortened(expected) })
+    };
+    let (sensor, name) = match map.split_once('/') {
+        Some((sensor, name)) => (Some(sensor), name),
+        None => (None, map.as_str()),
+    };
+    let mut of_scene = scene.sensors().map(|sensor| sensor.to_string());
+    if let Some(sensor) = sensor.filter(|sensor| !of_scene.any(|one| one == *sensor)) {
+        let sensors: Vec<String> = scene.sensors().map(|sensor| sensor.to_string()).collect();
+        return refuse(format!("the scene has no sensor {sensor}"), sensors.join(", "));
+    }
+    let has = |one: SensorId| {
+        sensor.is_none_or(|sensor| one.to_string() == sensor)
+            && (names::item_of_channel(scene, one, name).is_some()
+                || is_path_tracer_channel(&format!("{one}/{name}")))
+    };
+    let having: Vec<SensorId> = scene.sensors().filter(|one| has(*one)).collect();
+    if having.is_empty() {
+        let all = scene.sensors().filter(|one| sensor.is_none_or(|sensor| one.to_string() == sensor));
+        let mut maps: Vec<String> = all.flat_map(|one| maps_of(scene, one)).collect();
+        maps.dedup();
+        return refuse("there is no such map".into(), format!("one of {}", maps.join(", ")));
+    }
+    if !having.iter().any(|one| channels.by_key.contains_key(&format!("{one}/{name}"))) {
+        let sensors: Vec<String> = having.iter().map(|one| format!("{one}/{name}")).collect();
+        return refuse("its file says of no sensor that it belongs to it".into(), sensors.join(" or "));
+    }
+    Ok(())
 }
 
 /// A recording has the name of its folder.

@@ -11,6 +11,19 @@ pub(super) const OFF_AXIS: &str = "offAxis.V";
 pub(super) const EMISSION: &str = "emission.V";
 pub(super) const FLUX: &str = "flux.V";
 
+/// Lengths that depth images hold as whole numbers.
+pub(super) const MAYBE_WHOLE: [&str; 3] = ["range.T", "depth.Z", VIEW];
+
+/// The names of all maps of a sensor of a scene but those of path tracers.
+pub(super) fn maps_of(scene: &Scene, sensor: SensorId) -> Vec<String> {
+    let fixed = HitQuantity::ALL.into_iter().flat_map(|quantity| quantity.channels().iter().copied());
+    let fixed = fixed.chain([FACE, VISIBLE, PIXEL[0], PIXEL[1], VIEW, OFF_AXIS, EMISSION]).map(String::from);
+    let models = [None, Some(scene.flux_model().other())];
+    let of_beams = (0..scene.beams().len()).flat_map(|beam| models.map(|model| image_channel(beam, model)));
+    let all = fixed.chain(models.map(flux_channel)).chain(of_beams);
+    all.filter(|name| item_of_channel(scene, sensor, name).is_some()).collect()
+}
+
 /// Whether a channel holds radiance or a Monte Carlo estimate, which only a path tracer has.
 pub(super) fn is_path_tracer_channel(key: &str) -> bool {
     let Some((sensor, name)) = key.split_once('/') else { return false };

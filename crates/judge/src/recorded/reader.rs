@@ -32,7 +32,8 @@ pub(super) fn recordings_in(folder: &Path) -> Vec<String> {
             let stem = stem.to_string_lossy();
             stem == "camera" || stem.starts_with("beam-")
         });
-        stem && (path.is_dir() || path.extension().is_some_and(|ending| ending == "exr"))
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        stem && (path.is_dir() || matches!(ending, Some("exr" | "npz"))) || ending == Some("zarr")
     };
     let entries = |folder: &Path| -> Vec<PathBuf> {
         let entries = std::fs::read_dir(folder).into_iter().flatten();
@@ -142,7 +143,14 @@ impl<'a> Reader<'a> {
             Some((name, channel)) => match &channel.values {
                 Values::Reals(image) => Ok(Some(Reals { name, channel, image })),
                 Values::Wholes(_) => {
-                    Err(Self::fault((name, channel), None, "whole numbers".into(), "floating-point numbers"))
+                    let fault =
+                        Self::fault((name, channel), None, "whole numbers".into(), "floating-point numbers");
+                    let help = names::MAYBE_WHOLE.contains(&name).then(|| {
+                        "if they count units of a length, as depth images of 16 bits do, declare the metres of a unit: --scale \
+                         0.001 for millimetres. 0 then means \"no hit\""
+                            .to_string()
+                    });
+                    Err(Self::with_help(fault, help))
                 }
             },
         }
@@ -207,8 +215,9 @@ impl<'a> Reader<'a> {
             Some((names::FACE.into(), faces.cells().iter().map(|face| *face != u32::MAX).collect()))
         } else {
             values.first().map(|(_, parts)| {
+                let of = |part: &Reals<'_>| self.conventions.of_storage(part.channel.storage);
                 let means_miss =
-                    |at: usize| parts.iter().all(|part| self.conventions.means_miss(part.image.cells()[at]));
+                    |at: usize| parts.iter().all(|part| of(part).means_miss(part.image.cells()[at]));
                 let cells = parts[0].image.cells().iter().enumerate();
                 let hits = cells.map(|(at, x)| x.is_finite() && !means_miss(at)).collect();
                 (parts[0].name.to_string(), hits)
@@ -235,7 +244,8 @@ impl<'a> Reader<'a> {
                     let expected = format!("a type that holds ranges up to the sensor's {most} m");
                     return Err(Self::fault((part.name, part.channel), None, found, &expected));
                 }
-                let hits = Hits { hits: &hits, speaker: &speaker, said, conventions: self.conventions };
+                let conventions = self.conventions.of_storage(storage);
+                let hits = Hits { hits: &hits, speaker: &speaker, said, conventions };
                 images.push(maybe(*part, hits, quantity.is_length())?);
             }
             let storage = parts.iter().map(|part| part.channel.storage).min().unwrap_or(Storage::F64);
@@ -351,14 +361,14 @@ impl<'a> Reader<'a> {
         ];
         for (name, quantity, is_length) in scalars {
             let Some(reals) = self.reals(sensor, name)? else { continue };
+            let conventions = self.conventions.of_storage(reals.channel.storage);
             let image = match &hits {
                 Some((speaker, hits)) => {
-                    let hits = Hits { hits, speaker, said: None, conventions: self.conventions };
+                    let hits = Hits { hits, speaker, said: None, conventions };
                     maybe_signed(reals, hits, is_length)?
                 }
                 None => {
                     // No other channel tells which pencils hit; `check` takes that from the truth.
-                    let conventions = self.conventions;
                     let says_hit = |x: &f64| x.is_finite() && !conventions.means_miss(*x);
                     let own: Vec<bool> = reals.image.cells().iter().map(says_hit).collect();
                     maybe_signed(
@@ -412,7 +422,7 @@ fn maybe(reals: Reals<'_>, hits: Hits<'_>, is_length: bool) -> Result<Image<Mayb
     let image = maybe_signed(reals, hits, is_length)?;
     if is_length && let Some(index) = image.cells().iter().position(|x| x.get().is_some_and(|x| x < 0.0)) {
         let found = reals.image.cells()[index].to_string();
-        let help = declare_miss(reals.image.cells()[index]);
+        let help = declare_miss(reals.image.cells()[index], reals.channel.storage);
         let place = (reals.name, reals.channel);
         let fault = Reader::fault(place, Some(cell(reals.image, index)), found, "no negative length");
         return Err(Reader::with_help(fault, Some(help)));
@@ -421,8 +431,12 @@ fn maybe(reals: Reals<'_>, hits: Hits<'_>, is_length: bool) -> Result<Image<Mayb
 }
 
 /// A line of help for a number that may mean "no hit".
-fn declare_miss(value: f64) -> String {
-    // As people write it.
+fn declare_miss(value: f64, storage: Storage) -> String {
+    // As people write it, and as the file has it.
+    let value = match storage {
+        Storage::Steps(step) => libm::round(value / step.get()),
+        _ => value,
+    };
     let word = if value.is_nan() { "nan".to_string() } else { value.to_string() };
     format!("if {word} means \"no hit\" in this recording, declare --miss {word}")
 }
@@ -446,7 +460,7 @@ fn maybe_signed(
                     "if {speaker} does not say which rays hit, declare --no-faces: it is then left out"
                 )),
                 // A map that says "hit" by a number that others write for "no hit".
-                Some(said) => Some(declare_miss(said.cells()[index])),
+                Some(said) => Some(declare_miss(said.cells()[index], channel.storage)),
                 None => None,
             };
             return wrong(format!("a number, as {speaker} says that something is hit"), help);
@@ -456,7 +470,7 @@ fn maybe_signed(
         if !hit && !is_nothing {
             let nothing = if is_length { "+Inf" } else { "NaN" };
             let expected = format!("{nothing}, as {speaker} says that nothing is hit");
-            return wrong(expected, Some(declare_miss(value)));
+            return wrong(expected, Some(declare_miss(value, channel.storage)));
         }
         cells.push(Maybe::from(hit.then_some(value)));
     }

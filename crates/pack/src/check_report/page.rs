@@ -11,7 +11,7 @@ use raypencil_scene::{Image, Maybe};
 use crate::check::Checked;
 use crate::check_report::explorer::explorer;
 use crate::check_report::verdict::{
-    arithmetic, half_precision, headline, items_not_given, listed_totals, not_given, sign, verdict,
+    arithmetic, coarse_storages, headline, items_not_given, listed_totals, not_given, sign, verdict,
 };
 
 /// Pictures of every sensor: the exact ranges, the candidate's, and their difference.
@@ -28,7 +28,7 @@ struct Page<'a> {
     why: String,
     /// The worst defect in one sentence; empty if there is none.
     worst: String,
-    half: String,
+    coarse: Vec<String>,
     /// What was not compared, and why; empty if everything was.
     absent: String,
     candidate: &'a str,
@@ -98,7 +98,7 @@ pub fn check_page(checked: &Checked) -> Result<String, askama::Error> {
         headline,
         worst: worst.unwrap_or_default(),
         why: checked.why().unwrap_or_default(),
-        half: half_precision(recorded),
+        coarse: coarse_storages(recorded),
         absent: absent.join(", "),
         candidate: &recorded.name,
         arithmetic: arithmetic(recorded.precision),

@@ -7,7 +7,7 @@ use raypencil_report::{Align, Table, count, counted, quantity};
 
 use crate::check::{Checked, Verified};
 use crate::check_report::verdict::{
-    MAX_SHOWN_DEFECTS, arithmetic, half_precision, headline, items_not_given, listed_totals, not_given, sign,
+    MAX_SHOWN_DEFECTS, arithmetic, coarse_storages, headline, items_not_given, listed_totals, not_given, sign,
 };
 use crate::published::PackIdentity;
 
@@ -73,9 +73,14 @@ pub fn check_screen(checked: &Checked) -> String {
     for name in &recorded.unknown {
         let _ = writeln!(text, "Unknown channel, not compared: {name}");
     }
-    let half = half_precision(recorded);
-    if !half.is_empty() {
-        let _ = writeln!(text, "{half}");
+    if !recorded.unknown.is_empty() {
+        let _ = writeln!(
+            text,
+            "Say which map a channel is by --channel MAP=CHANNEL, such as --channel depth.Z=CHANNEL."
+        );
+    }
+    for remark in coarse_storages(recorded) {
+        let _ = writeln!(text, "{remark}");
     }
     for why in ["not given", "stored in a type that cannot hold it"] {
         let names: Vec<String> = items_not_given(check)

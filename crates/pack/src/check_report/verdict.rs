@@ -34,7 +34,7 @@ pub(crate) fn sign(checked: &Checked) -> &'static str {
     }
 }
 
-/// The outcome in one sentence. A recording in half precision is never said to be exact.
+/// The outcome in one sentence. A recording in half precision, or in steps, is never said to be exact.
 pub(crate) fn headline(checked: &Checked) -> String {
     let Checked { check, recorded, .. } = checked;
     let rays = count(check.compared());
@@ -43,14 +43,16 @@ pub(crate) fn headline(checked: &Checked) -> String {
     let partial = if is_partial { "; nothing is known about what was not compared" } else { "" };
     let (tie, rounding) = (of(Class::Tie), of(Class::Rounding));
     match verdict(checked) {
-        "agrees" if recorded.items_in_half().is_empty() => format!(
-            "{rays} rays agree with the exact answers: {} exact, {tie} tie, {rounding} rounding{partial}.",
-            of(Class::Agree)
-        ),
-        "agrees" => format!(
-            "{rays} rays agree to half precision: {} agree, {tie} tie, {rounding} rounding{partial}.",
-            of(Class::Agree)
-        ),
+        "agrees" => match recorded.coarseness() {
+            None => format!(
+                "{rays} rays agree with the exact answers: {} exact, {tie} tie, {rounding} rounding{partial}.",
+                of(Class::Agree)
+            ),
+            Some(coarse) => format!(
+                "{rays} rays agree to {coarse}: {} agree, {tie} tie, {rounding} rounding{partial}.",
+                of(Class::Agree)
+            ),
+        },
         "defects" => {
             format!("{} of {rays} rays are wrong, {} undecided.", of(Class::Defect), of(Class::Undecided))
         }
@@ -63,17 +65,23 @@ pub(crate) fn headline(checked: &Checked) -> String {
     }
 }
 
-/// A remark on what is stored in half precision; empty if nothing is.
-pub(crate) fn half_precision(recorded: &Recorded) -> String {
-    let names: Vec<String> = recorded.items_in_half().into_iter().map(name_of).collect();
-    if names.is_empty() {
-        return String::new();
-    }
-    format!(
-        "Stored in half precision (11 binary digits, up to {}) and judged as such: {}",
-        Storage::F16.max(),
-        names.join(", ")
-    )
+/// A remark for each storage that is coarser than single precision: what is stored so, and which errors it hides.
+pub(crate) fn coarse_storages(recorded: &Recorded) -> Vec<String> {
+    let remark = |(how, items): (Storage, Vec<Item>)| {
+        let names = items.into_iter().map(name_of).collect::<Vec<_>>().join(", ");
+        match how {
+            Storage::Steps(step) => format!(
+                "Stored in {how} and judged as such: {names}. Errors below half a step, {} m, cannot be seen",
+                0.5 * step.get()
+            ),
+            _ => format!(
+                "Stored in half precision (11 binary digits, up to {}) and judged as such: {names}. Errors below a 2048th of a \
+                 number, 1 mm at 2 m, cannot be seen",
+                Storage::F16.max()
+            ),
+        }
+    };
+    recorded.coarse_items().into_iter().map(remark).collect()
 }
 
 /// Why nothing of an item was compared: it was not given, or its type cannot hold it. `None` if it was compared, or if

@@ -128,6 +128,8 @@ def check(
     *,
     miss: float | None = None,
     no_faces: bool = False,
+    channels: Mapping[str, str] | None = None,
+    scale: float | None = None,
     verify: bool = False,
     name: str = "answers",
     output: PathLike | None = None,
@@ -137,14 +139,19 @@ def check(
 
     Args:
         pack: folder of the pack.
-        answers: a folder of EXR, NPY or PFM files, or arrays. For a pack of rays: a dictionary with ``face``, ``t``, ... or a
+        answers: a folder of EXR, NPY, NPZ, PFM, PNG or TIFF files or a Zarr store, or arrays. For a pack of rays: a dictionary with ``face``, ``t``, ... or a
             :class:`CastResult`. For a pack of a scene: a dictionary with the channels of docs/formats/files.md, as
             ``"camera/range.T"`` or nested, or a :class:`RenderResult`. For an input pack: ``triangles`` (m, 9) and
             ``reflectivity`` (m,).
         arithmetic: that of the answers, whatever type they are stored in. Default: as the folder's ``candidate.json`` says,
             else ``"f64"``.
-        miss: a number that means no hit.
+        miss: a number that means no hit; of whole numbers with ``scale``, as the file has it.
         no_faces: leave out the indices of faces.
+        channels: which channel of the files is which map, such as ``{"depth.Z": "ViewLayer.Depth.Z"}``. The map says what the
+            numbers are: ``depth.Z`` along the optical axis, ``range.T`` along the ray. docs/formats/files.md has the rules; a
+            ``candidate.json`` can declare the same.
+        scale: metres for each unit of ``range.T``, ``depth.Z`` and ``view.Z`` in whole numbers, such as 0.001 for depth images
+            of 16 bits in millimetres. 0 then means no hit.
         verify: of a pack of a scene, compare every answer of the pack with the referee's; without it a sample, and each
             by which a ray is wrong. The text says how many were.
         name: what messages call answers that are no folder.
@@ -159,7 +166,8 @@ def check(
     def checked(candidate: Path) -> CheckResult:
         with stages(progress) as on_stage:
             answer = _raypencil.check(
-                os.fspath(pack), os.fspath(candidate), arithmetic, miss, no_faces, verify, folder and os.fspath(folder), on_stage
+                os.fspath(pack), os.fspath(candidate), list((channels or {}).items()), scale, arithmetic, miss, no_faces,
+                verify, folder and os.fspath(folder), on_stage,
             )
         return CheckResult(answer, folder)
 
@@ -174,8 +182,19 @@ def check(
         return checked(candidate)
 
 
-def read(path: PathLike, *, progress: Progress = False) -> dict[str, NDArray[Any]]:
-    """Reads the maps of a file or folder of any program: EXR, NPY, PFM.
+def read(
+    path: PathLike,
+    *,
+    channels: Mapping[str, str] | None = None,
+    scale: float | None = None,
+    progress: Progress = False,
+) -> dict[str, NDArray[Any]]:
+    """Reads the maps of a file or folder of any program: EXR, NPY, NPZ, Zarr, PFM, PNG, TIFF.
+
+    Args:
+        path: of the file, folder or store.
+        channels, scale: as for :func:`check`.
+        progress: see :func:`cast`.
 
     Returns:
         Channels by their keys (docs/formats/files.md), such as ``camera/range.T``: (rows, columns), row 0 on top; float32 or
@@ -185,6 +204,6 @@ def read(path: PathLike, *, progress: Progress = False) -> dict[str, NDArray[Any
         RaypencilError: what is wrong with which file.
     """
     with stages(progress) as on_stage:
-        return dict(_arrays.frozen(_raypencil.read_recording(os.fspath(path), on_stage)))
+        return dict(_arrays.frozen(_raypencil.read_recording(os.fspath(path), list((channels or {}).items()), scale, on_stage)))
 
 

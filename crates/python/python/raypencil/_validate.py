@@ -85,6 +85,8 @@ def validate(
     judge: Literal["sample", "all"] = "sample",
     switches: Mapping[str, str] | None = None,
     candidates: Sequence[str | os.PathLike[str]] = (),
+    channels: Mapping[str, str] | None = None,
+    scale: float | None = None,
     allow_empty: bool = False,
     output: str | os.PathLike[str] | None = None,
     progress: Progress = False,
@@ -97,6 +99,7 @@ def validate(
         judge: of the rays that agree the referee rules on ``"sample"``, one in 64, or on ``"all"``.
         switches: of the scanline renderer: ``{"facing": "paper"}``.
         candidates: folders with other programs' answers to this scene, to be checked besides.
+        channels, scale: of the candidates' files, as for :func:`check`.
         allow_empty: whether a scene in which nothing is hit may pass.
         output: a folder for the report and the files of the command ``validate``.
         progress: see :func:`cast`.
@@ -114,7 +117,8 @@ def validate(
     of_switches = list((switches or {}).items())
     with stages(progress) as on_stage:
         core = _raypencil.validate(
-            scene._core, list(with_), of_switches, judge == "all", folders, allow_empty, folder, on_stage
+            scene._core, list(with_), of_switches, judge == "all", folders, list((channels or {}).items()), scale,
+            allow_empty, folder, on_stage,
         )
     return ValidationResult(core, scene.sha256, scene.flux_unit)
 
@@ -135,6 +139,8 @@ def diff(
     a: str | os.PathLike[str],
     b: str | os.PathLike[str],
     *,
+    channels: Mapping[str, str] | None = None,
+    scale: float | None = None,
     fail: float = 0.0,
     fail_relative: float = 0.0,
     fail_ulp: float = 0.0,
@@ -146,12 +152,13 @@ def diff(
     output: str | os.PathLike[str] | None = None,
     progress: Progress = False,
 ) -> DiffResult:
-    """Compares two recordings: files or folders of EXR, NPY or PFM, of any program.
+    """Compares two recordings: files or folders of EXR, NPY, NPZ, Zarr, PFM, PNG or TIFF, of any program.
 
     A cell passes if ``fail`` (absolute, in the channel's unit), ``fail_relative`` or ``fail_ulp`` allows its difference;
     ``fail_percent`` of a channel's cells may fail; no cell may differ by more than ``hard_fail``. ``shared_only`` ignores
     channels that one side has alone. With ``scene`` the referee rules on each cell that differs by more than is allowed, and
     a channel fails only if a side is wrong; ``arithmetic`` is then that of both. ``output`` is a folder for the report.
+    ``channels`` and ``scale`` are as for :func:`check`; they concern each side that has such a channel.
 
     Raises:
         RaypencilError: files that cannot be read, nothing in common, two sizes of one channel, a threshold below 0.
@@ -166,7 +173,7 @@ def diff(
     folder = None if output is None else os.fspath(output)
     with stages(progress) as on_stage:
         passes, text, document = _raypencil.diff(
-            os.fspath(a), os.fspath(b), fail, fail_relative, fail_ulp, fail_percent, hard_fail, shared_only, core,
-            arithmetic, folder, on_stage,
+            os.fspath(a), os.fspath(b), list((channels or {}).items()), scale, fail, fail_relative, fail_ulp,
+            fail_percent, hard_fail, shared_only, core, arithmetic, folder, on_stage,
         )
     return DiffResult(passes, text, document)

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use proptest::prelude::*;
-use raypencil_scene::Sides;
+use raypencil_scene::{Pose, Sides};
 use raypencil_scene_io::{LoadedRaySets, ray_sets_from_text, read_ray_sets};
 
 fn read(text: &str) -> Result<LoadedRaySets, String> {
@@ -300,4 +300,101 @@ proptest! {
             Err(message) => prop_assert!(message.starts_with("r.toml:"), "{}", message),
         }
     }
+}
+
+/// Row `index` of a walk: its time, position, and turn to the left in degrees.
+fn walk(index: u32) -> (f64, DVec3, f64) {
+    let k = f64::from(index);
+    (0.1 * k, DVec3::new(0.5 * k, 1.0 / (1.0 + k), 1.2), k / 64.0 - 100.0)
+}
+
+/// The rotation of a pose in TOML, which turns about z, y and x.
+fn rotation(yaw_left_deg: f64) -> glam::DQuat {
+    let turn = |axis, degrees: f64| Pose::from_axis_angle(axis, degrees.to_radians());
+    (turn(DVec3::Z, yaw_left_deg) * turn(DVec3::Y, 0.0) * turn(DVec3::X, 0.0)).rotation
+}
+
+/// A walk of so many poses, with this between its numbers.
+fn trajectory(count: u32, blank: &str) -> String {
+    let row = |index| {
+        let (time, position, yaw) = walk(index);
+        let q = rotation(yaw);
+        let row = [time, position.x, position.y, position.z, q.x, q.y, q.z, q.w];
+        row.map(|number| format!("{number:?}")).join(blank) + "\n"
+    };
+    (0..count).map(row).collect()
+}
+
+#[test]
+fn poses_of_a_file_are_those_of_the_list() {
+    let folder = tempfile::tempdir().unwrap();
+    let toml = folder.path().join("r.toml");
+    let lines = "spinning = { preset = \"vlp-16\", steps = 900 }\nstart_s = 0.25\n";
+    let read = |more: &str| {
+        let text = format!("[[rays]]\nname = \"a\"\n{lines}{more}");
+        ray_sets_from_text(&text, &toml).map_err(|error| error.to_string())
+    };
+    let list: Vec<String> = (0..200)
+        .map(|index| {
+            let (time, position, yaw) = walk(index);
+            let [x, y, z] = position.to_array();
+            format!("{{ time_s = {time:?}, position_m = [{x:?}, {y:?}, {z:?}], yaw_left_deg = {yaw:?} }}")
+        })
+        .collect();
+    let of_list = read(&format!("poses = [{}]\n", list.join(", "))).unwrap();
+    for (name, blank) in [("w.tum", " "), ("w.csv", ",")] {
+        std::fs::write(folder.path().join(name), trajectory(200, blank)).unwrap();
+        let of_file = read(&format!("poses_file = \"{name}\"\n")).unwrap();
+        assert_eq!(of_file.sets, of_list.sets, "{name}");
+        // Another file is another question.
+        assert_ne!(of_file.sha256, of_list.sha256);
+        // As many as a TOML file cannot hold.
+        std::fs::write(folder.path().join(name), trajectory(20_000, blank)).unwrap();
+        let long = read(&format!("poses_file = \"{name}\"\n")).unwrap();
+        assert_eq!(long.sets, of_list.sets, "{name}");
+        assert_ne!(long.sha256, of_file.sha256);
+    }
+    let refused = |more: &str| read(more).unwrap_err();
+    assert!(refused("poses_file = \"none.tum\"\n").contains("there is no file"));
+    let beside = refused("poses_file = \"w.csv\"\nyaw_left_deg = 1\n");
+    assert!(beside.contains("`rays 0.yaw_left_deg` beside `poses_file`"), "{beside}");
+    assert!(refused("poses_file = \"w.csv\"\nposes = []\n").contains("`rays 0.poses` beside `poses_file`"));
+    std::fs::write(folder.path().join("w.tum"), "0 0 0 0 0 0 0 2\n").unwrap();
+    let message = refused("poses_file = \"w.tum\"\n");
+    assert!(
+        message.contains("w.tum: line 1: a quaternion of length 2; expected 1 to within 0.001"),
+        "{message}"
+    );
+}
+
+#[test]
+fn rays_of_a_file_are_fired_at_times_of_their_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let rays = "0,0,0,0,0,-1\n0,0,0,1,0,0\n0,1,0,1,0,0\n";
+    std::fs::write(path("rays.csv"), rays).unwrap();
+    raypencil_files::write_npy_numbers(path("t.npy"), &[3], &[10.0, 10.25, 11.0]).unwrap();
+    raypencil_files::write_npy_numbers(path("two.npy"), &[2], &[10.0, 11.0]).unwrap();
+    raypencil_files::write_npy_numbers(path("nan.npy"), &[3], &[10.0, f64::NAN, 11.0]).unwrap();
+    std::fs::write(path("w.tum"), "10 0 0 5 0 0 0 1\n11 8 0 5 0 0 0 1\n").unwrap();
+    let read = |lines: &str| {
+        let text = format!("[[rays]]\nname = \"a\"\n{lines}");
+        ray_sets_from_text(&text, &path("r.toml")).map_err(|error| error.to_string())
+    };
+    let mut loaded = read("file = \"rays.csv\"\ntimes_file = \"t.npy\"\nposes_file = \"w.tum\"\n").unwrap();
+    let set = loaded.sets.remove(0);
+    assert_eq!(set.times, Some(vec![10.0, 10.25, 11.0]));
+    // 8 m in a second: a quarter of them after a quarter of it.
+    let origins: Vec<DVec3> = set.set.rays().iter().map(|ray| ray.origin).collect();
+    assert_eq!(origins, [[0.0, 0.0, 5.0], [2.0, 0.0, 5.0], [8.0, 1.0, 5.0]].map(DVec3::from_array));
+    let refused = |lines: &str| read(lines).unwrap_err();
+    let shape = refused("file = \"rays.csv\"\ntimes_file = \"two.npy\"\n");
+    assert!(
+        shape.contains("`rays 0.times_file` has shape [2]; expected [3], a time for each ray of `file`"),
+        "{shape}"
+    );
+    assert!(refused("file = \"rays.csv\"\ntimes_file = \"nan.npy\"\n").contains("the time of ray 1 is NaN"));
+    assert!(refused("file = \"rays.csv\"\ntimes_file = \"no.npy\"\n").contains("there is no file"));
+    let pattern = refused("spinning = { preset = \"vlp-16\" }\ntimes_file = \"t.npy\"\n");
+    assert!(pattern.contains("`rays 0.times_file` without `file`"), "{pattern}");
 }

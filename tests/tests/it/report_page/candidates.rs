@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use raypencil::harness::{Candidate, Contender, contender, validate, write_validation};
-use raypencil::judge::{Conventions, JudgeShare};
-use raypencil::pack::{PackLabel, check_pack_by, write_check, write_pack};
+use raypencil::judge::JudgeShare;
+use raypencil::pack::{PackLabel, check_pack, write_check, write_pack};
 use raypencil::{Maybe, Precision, RenderOutput, Renderer, Request, Scene, Silent, Tracer};
 use raypencil_tests::fixtures;
 
@@ -90,8 +90,7 @@ fn every_wrong_ray_of_a_candidate_has_its_words() {
     // In `check`.
     let pack = tempfile::tempdir().expect("a folder");
     write_pack(&written.validation.subject, None, &PackLabel::NONE, pack.path(), &Silent).expect("a pack");
-    let conventions = Conventions { miss: None, ignores_faces: false };
-    let checked = check_pack_by(pack.path(), &folder, Some(Precision::F64), conventions, &Silent);
+    let checked = check_pack(pack.path(), &folder, Some(Precision::F64), &Silent);
     let checked = checked.expect("a check");
     assert!(!checked.passes());
     let pages = tempfile::tempdir().expect("a folder");

@@ -7,7 +7,6 @@ mod inspect;
 
 use clap::Subcommand;
 
-pub(crate) use dem::DemArgs;
 pub(crate) use generate::TerrainGenerate;
 pub(crate) use import::TerrainImport;
 pub(crate) use inspect::TerrainInspect;

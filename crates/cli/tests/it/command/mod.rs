@@ -14,6 +14,7 @@ mod help;
 mod injection;
 mod manners;
 mod messages;
+mod other_programs;
 mod packs;
 mod ray_sets;
 mod scene;

@@ -176,3 +176,43 @@ fn a_wrong_set_is_an_error_with_its_place() {
     let output = raypencil(folder.path(), &["validate", "lidar.toml"]);
     assert_trouble(&output, &["lidar.toml:21:8", "`rays 2.name` is \"front\", the name of another set"]);
 }
+
+#[test]
+fn patterns_become_packs_of_rays() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let cube = "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n";
+    fs::write(folder.path().join("floor.obj"), cube).expect("a file");
+    let set = |name: &str, sides: &str| {
+        format!(
+            "[[rays]]\nname = \"{name}\"\nspinning = {{ elevations_deg = [-90], steps = 1 }}\nposition_m = [1, 1, 2]\n\
+             roll_right_deg = 0\nsides = \"{sides}\"\n"
+        )
+    };
+    fs::write(folder.path().join("one.toml"), set("down", "both")).expect("a file");
+    fs::write(folder.path().join("two.toml"), set("a", "both") + &set("b", "fronts")).expect("a file");
+    let shown = screen(folder.path(), &["pack", "floor.obj", "--rays", "one.toml", "-o", "one"], 0);
+    assert!(shown.starts_with("one: the pack of 1 ray; 1 hit"), "{shown}");
+    let shown = screen(folder.path(), &["pack", "floor.obj", "--rays", "two.toml", "-o", "two"], 0);
+    assert!(
+        shown.contains("two/a: the pack of 1 ray; 1 hit") && shown.contains("two/b: the pack of 1 ray"),
+        "{shown}"
+    );
+    // What `cast` answers to the same pattern passes each of them.
+    screen(folder.path(), &["cast", "floor.obj", "one.toml", "-o", "answers"], 0);
+    for pack in ["one", "two/a"] {
+        screen(folder.path(), &["check", pack, "answers"], 0);
+    }
+    let sides = |pack: &str| {
+        let document: Value =
+            serde_json::from_slice(&fs::read(folder.path().join(pack).join("raypack.json")).expect("a pack"))
+                .expect("a document");
+        document["sides"].as_str().expect("sides").to_string()
+    };
+    assert_eq!(["one", "two/a", "two/b"].map(sides), ["both", "both", "fronts"]);
+    let shown =
+        screen(folder.path(), &["pack", "floor.obj", "--rays", "two.toml", "-o", "json", "--json"], 0);
+    let document: Value = serde_json::from_str(&shown).expect("a document");
+    assert_eq!(document["packs"][1]["pack"], "json/b");
+    let wrong = raypencil(folder.path(), &["pack", "floor.obj", "--rays", "none.toml", "-o", "none"]);
+    assert_trouble(&wrong, &["none.toml"]);
+}

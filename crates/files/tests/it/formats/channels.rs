@@ -238,7 +238,8 @@ fn paths_without_a_recording_are_refused() {
     let message = folder.read().unwrap_err();
     assert!(
         message.ends_with(
-            "folder: no maps; expected at least one .exr, .npy or .pfm file, here or one folder below"
+            "folder: no maps; expected at least one file that ends in .exr, .npy, .npz, .pfm, .png or .tif, here or one \
+             folder below, or a .zarr store"
         ),
         "{message}"
     );
@@ -247,7 +248,7 @@ fn paths_without_a_recording_are_refused() {
     assert!(folder.read().is_err());
     let refused = |path: &Path| read_channels(path, &Limits::default()).unwrap_err().to_string();
     let message = refused(&text);
-    let expected = "expected a folder, or a file that ends in .exr, .npy or .pfm";
+    let expected = "expected a folder, or a file that ends in .exr, .npy, .npz, .pfm, .png or .tif";
     assert!(
         message.contains("notes.txt: recording: a file of an unknown kind") && message.ends_with(expected)
     );

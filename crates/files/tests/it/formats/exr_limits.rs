@@ -109,11 +109,17 @@ fn a_header_of_many_channels_or_bytes_is_refused() {
 
 #[test]
 fn parts_are_counted_before_they_are_read() {
-    let one = header([4, 16], FLOAT, 1, 0);
-    // The flag of several parts; the second part repeats the first header.
-    let mut two = [&one[..], &one[8..], &[0]].concat();
-    two[5] = 1 << 4;
-    assert_refused(&two, "header: several parts; expected one part: split multi-part files first");
+    // The flag of several parts, and as many headers that repeat the first; an empty one ends the list.
+    let parts = |count: usize, channels: usize, more: usize| {
+        let one = header([4, 16], FLOAT, channels, more);
+        let mut all = [&one[..8], &one[8..].repeat(count)[..], &[0]].concat();
+        all[5] = 1 << 4;
+        all
+    };
+    assert_refused(&parts(65, 1, 0), "header: 65 parts or more; expected at most 64");
+    // Attributes and channels count in all parts together.
+    assert_refused(&parts(40, 1, 18), "header: 1025 attributes or more; expected at most 1024");
+    assert_refused(&parts(2, 513, 0), "header: 1025 channels or more; expected at most 1024");
 }
 
 #[test]

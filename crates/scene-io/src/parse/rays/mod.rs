@@ -5,6 +5,7 @@ mod grid;
 mod mount;
 mod pattern;
 mod spinning;
+mod times;
 
 use serde::Deserialize;
 use std::collections::BTreeSet;
@@ -30,6 +31,7 @@ const MAX_SETS: usize = 1000;
 pub(crate) struct RaysKeys {
     name: Key<String>,
     file: Key<String>,
+    times_file: Key<String>,
     spinning: Key<spinning::SpinningKeys>,
     grid: Key<grid::GridKeys>,
     cone: Key<ConeKeys>,
@@ -40,6 +42,7 @@ pub(crate) struct RaysKeys {
     yaw_left_deg: Key<f64>,
     roll_right_deg: Key<f64>,
     poses: Key<Vec<Spanned<TimedPoseKeys>>>,
+    poses_file: Key<String>,
 }
 
 impl Source<'_> {
@@ -78,7 +81,7 @@ impl Source<'_> {
                 return Err(self.error(table.span(), message));
             }
             before += count;
-            sets.push(self.ray_set(index, table, pattern)?);
+            sets.push(self.ray_set(index, table, pattern, &mut digests)?);
         }
         Ok((sets, digests))
     }
@@ -116,6 +119,7 @@ impl Source<'_> {
         index: usize,
         table: &Spanned<RaysKeys>,
         pattern: Pattern,
+        digests: &mut Vec<Sha256Digest>,
     ) -> Result<NamedRaySet, SceneIoError> {
         let keys = table.get_ref();
         let name = format!("rays {index}");
@@ -124,10 +128,16 @@ impl Source<'_> {
         self.choice(&keys.sides, &format!("{name}.sides"), &mut sides, &words)?;
         let pose =
             OnePose::new(&keys.position_m, [&keys.yaw_left_deg, &keys.pitch_down_deg, &keys.roll_right_deg]);
-        let mounting = self.mounting(&name, &pose, &keys.poses)?;
+        let mounting = match &keys.poses_file {
+            Some(file) => self.mounting_of_file(&name, &pose, (&keys.poses, file), digests)?,
+            None => self.mounting(&name, &pose, &keys.poses)?,
+        };
         let start = self.start(&name, &keys.start_s)?;
         let refused = |error| self.refused(table.span(), &error);
         let mut rays = pattern.rays(&name).map_err(refused)?;
+        if let Some(file) = &keys.times_file {
+            rays.times = Some(self.times(&name, &keys.file, file, &rays.shape, digests)?);
+        }
         if let Some(start) = start {
             rays = rays.starting_at(start);
         }

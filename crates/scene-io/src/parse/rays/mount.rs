@@ -2,9 +2,11 @@
 
 use glam::DVec3;
 use serde::Deserialize;
-use std::ops::{Range, RangeInclusive};
+use std::ops::Range;
+use std::path::Path;
 use toml::Spanned;
 
+use raypencil_files::{Sha256Digest, sha256};
 use raypencil_scene::Pose;
 use raypencil_scene::pattern::{Mounting, TimedPose, TimedPoses};
 
@@ -13,9 +15,7 @@ use crate::parse::shared::{GLOBAL_M, TURN_DEG};
 use crate::parse::source::Source;
 use crate::resolve::turned;
 use crate::scene_error::SceneIoError;
-
-/// Time of a pose, and of the first ray, seconds.
-const TIME_S: RangeInclusive<f64> = -1e12..=1e12;
+use crate::trajectory::{TIME_S, read_trajectory};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -52,6 +52,33 @@ impl Source<'_> {
     /// Time of the first ray, if it is given.
     pub(super) fn start(&self, name: &str, key: &Key<f64>) -> Result<Option<f64>, SceneIoError> {
         self.optional(key, &format!("{name}.start_s"), TIME_S, "seconds")
+    }
+
+    /// Poses of the set `name` from a file, whose path is relative to the TOML file.
+    pub(super) fn mounting_of_file(
+        &self,
+        name: &str,
+        pose: &OnePose<'_>,
+        (poses, file): (&Key<Vec<Spanned<TimedPoseKeys>>>, &Spanned<String>),
+        digests: &mut Vec<Sha256Digest>,
+    ) -> Result<Mounting, SceneIoError> {
+        let beside = poses.as_ref().map(|poses| ("poses", poses.span())).or_else(|| pose.first_given());
+        if let Some((key, place)) = beside {
+            let message = format!("`{name}.{key}` beside `poses_file`; expected one of the two");
+            return Err(self.error(place, message));
+        }
+        let path = self.file.parent().unwrap_or(Path::new("")).join(file.get_ref());
+        if !path.is_file() {
+            let message = format!(
+                "`{name}.poses_file`: there is no file \"{}\"; expected poses as TUM or CSV, the path relative to this file",
+                path.display()
+            );
+            return Err(self.error(file.span(), message));
+        }
+        let (timed, bytes) = read_trajectory(&path)?;
+        digests.push(sha256(&bytes));
+        let refused = |error| self.refused(file.span(), &error);
+        Ok(Mounting::Moving(TimedPoses::new(timed, &format!("{name}.poses_file")).map_err(refused)?))
     }
 
     /// Pose, or poses, of the set `name`.

@@ -1,0 +1,71 @@
+//! NPZ: archives of NumPy, plain and compressed, and damaged ones.
+
+use std::io::Write as _;
+use std::path::Path;
+
+use raypencil_files::{Limits, Storage, Values, npz_from_bytes};
+use zip::CompressionMethod;
+use zip::write::SimpleFileOptions;
+
+/// An NPY file of numbers in double precision, as NumPy writes it.
+fn npy(shape: &str, numbers: &[f64]) -> Vec<u8> {
+    let text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({shape}), }}\n");
+    let mut file = b"\x93NUMPY\x01\x00".to_vec();
+    file.extend((text.len() as u16).to_le_bytes());
+    file.extend(text.bytes());
+    file.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+    file
+}
+
+fn archive(entries: &[(&str, &[u8])], method: CompressionMethod) -> Vec<u8> {
+    let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    for (name, bytes) in entries {
+        archive.start_file(*name, SimpleFileOptions::default().compression_method(method)).unwrap();
+        archive.write_all(bytes).unwrap();
+    }
+    archive.finish().unwrap().into_inner()
+}
+
+fn refusal(bytes: &[u8], limits: &Limits) -> String {
+    npz_from_bytes(bytes, Path::new("a.npz"), limits).expect_err("a refusal").to_string()
+}
+
+#[test]
+fn plain_and_compressed_archives_are_read() {
+    let (range, points) = (npy("1, 2", &[1.5, f64::INFINITY]), npy("1, 1, 3", &[1.0, 2.0, 3.0]));
+    let (times, note) = (npy("3,", &[0.0, 1.0, 2.0]), b"not an array".as_slice());
+    let entries: [(&str, &[u8]); 4] =
+        [("range.T.npy", &range), ("P.npy", &points), ("times.npy", &times), ("note.txt", note)];
+    for method in [CompressionMethod::Stored, CompressionMethod::Deflated] {
+        let bytes = archive(&entries, method);
+        let arrays = npz_from_bytes(&bytes, Path::new("a.npz"), &Limits::default()).unwrap();
+        // Times are no map.
+        let names: Vec<&str> = arrays.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["range.T", "P"], "{method}");
+        assert_eq!(arrays[0].1.storage, Storage::F64);
+        assert_eq!((arrays[0].1.planes[0].real(0), arrays[0].1.planes[0].real(1)), (1.5, f64::INFINITY));
+        let Values::Reals(z) = &arrays[1].1.planes[2] else { panic!("reals") };
+        assert_eq!(z.cells(), [3.0]);
+    }
+}
+
+#[test]
+fn damaged_and_hostile_archives_are_refused() {
+    let range = npy("1, 2", &[1.5, 2.5]);
+    let good = archive(&[("range.T.npy", &range)], CompressionMethod::Stored);
+    assert!(refusal(&good[..good.len() - 30], &Limits::default()).starts_with("a.npz: archive: "));
+    assert!(refusal(b"PK", &Limits::default()).contains("an NPZ file that is complete"));
+    // A number that was changed has another check sum.
+    let mut changed = good.clone();
+    let at = good.windows(8).position(|bytes| bytes == 1.5_f64.to_le_bytes()).unwrap();
+    changed[at + 7] ^= 1;
+    assert!(refusal(&changed, &Limits::default()).starts_with("a.npz: array \"range.T\": "));
+    let cut = archive(&[("range.T.npy", &range[..range.len() - 8])], CompressionMethod::Stored);
+    let expected = "a.npz: array \"range.T\", numbers: 8 bytes; expected the 16 bytes of its shape (is the file cut off?)";
+    assert_eq!(refusal(&cut, &Limits::default()), expected);
+    // Zeros of a thousand times the size: refused by their claim.
+    let zeros = npy("1024, 1024", &vec![0.0; 1 << 20]);
+    let bytes = archive(&[("zeros.npy", &zeros)], CompressionMethod::Deflated);
+    let few = Limits { bytes: 1 << 20, ..Limits::default() };
+    assert!(refusal(&bytes, &few).contains("array \"zeros\": 8388"), "{}", refusal(&bytes, &few));
+}

@@ -1,0 +1,111 @@
+//! Zarr: what this crate writes is read back, and stores of other programs in several chunks.
+
+use std::fs;
+use std::path::Path;
+
+use raypencil_files::{ArrayData, Limits, NamedArray, Values, ZarrArray, read_zarr, write_zarr};
+
+fn array(name: &str, shape: &[u64], data: ArrayData) -> NamedArray {
+    let names = ["row", "column", "axis"];
+    let shape = shape.iter().zip(names).map(|(&length, name)| (name, length)).collect();
+    NamedArray { name: name.into(), unit: "m", meaning: "a test", shape, data }
+}
+
+fn refusal(store: &Path) -> String {
+    let error = read_zarr(store, &Limits::default()).expect_err("a refusal").to_string();
+    error.replace(&format!("{}/", store.display()), "")
+}
+
+#[test]
+fn a_written_store_is_read_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let numbers: Vec<f64> = (0..12).map(|k| f64::from(k) / 3.0).collect();
+    let camera = vec![
+        array("range.T", &[3, 4], ArrayData::F64(numbers.clone())),
+        array("P", &[2, 2, 3], ArrayData::F64(numbers.clone())),
+    ];
+    let beam = vec![
+        array("face.I", &[1, 2], ArrayData::U32(vec![7, u32::MAX])),
+        array("visible.V", &[1, 2], ArrayData::U8(vec![0, 1])),
+    ];
+    let groups = [("camera".to_string(), camera), ("beam-0".to_string(), beam)];
+    write_zarr(&folder.path().join("maps.zarr"), &[], &groups).unwrap();
+    let read = read_zarr(folder.path().join("maps.zarr"), &Limits::default()).unwrap();
+    let names: Vec<String> = read.iter().map(|one| format!("{}/{}", one.group, one.name)).collect();
+    assert_eq!(names, ["beam-0/face.I", "beam-0/visible.V", "camera/P", "camera/range.T"]);
+    let reals = |one: &ZarrArray, plane: usize| match &one.array.planes[plane] {
+        Values::Reals(image) => image.cells().to_vec(),
+        Values::Wholes(_) => panic!("reals"),
+    };
+    assert_eq!(reals(&read[3], 0), numbers);
+    assert_eq!(read[3].array.planes[0].size(), (4, 3));
+    assert_eq!(reals(&read[2], 1), [1.0, 4.0, 7.0, 10.0].map(|k| k / 3.0));
+    assert_eq!((read[0].array.planes[0].real(1), read[1].array.planes[0].real(1)), (4_294_967_295.0, 1.0));
+}
+
+/// An array of 3 x 5 numbers of 16 bits, 0 to 14, in chunks of 2 x 2, in the byte order of the description.
+fn chunked(folder: &Path, change: impl Fn(String) -> String) {
+    let array = folder.join("s.zarr/depth");
+    let group = r#"{"zarr_format": 3, "node_type": "group", "attributes": {}}"#;
+    fs::create_dir_all(array.join("c/0")).unwrap();
+    fs::create_dir_all(array.join("c/1")).unwrap();
+    fs::write(folder.join("s.zarr/zarr.json"), group).unwrap();
+    let document = r#"{"zarr_format": 3, "node_type": "array", "shape": [3, 5], "data_type": "uint16",
+        "chunk_grid": {"name": "regular", "configuration": {"chunk_shape": [2, 2]}},
+        "chunk_key_encoding": {"name": "default", "configuration": {"separator": "/"}}, "fill_value": 0,
+        "codecs": [{"name": "bytes", "configuration": {"endian": "big"}}], "attributes": {}}"#;
+    fs::write(array.join("zarr.json"), change(document.into())).unwrap();
+    for (row, column) in (0..2_u16).flat_map(|row| (0..3_u16).map(move |column| (row, column))) {
+        let mut bytes = Vec::new();
+        for (j, i) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let (j, i) = (2 * row + j, 2 * column + i);
+            // Behind the border of the array there may be anything.
+            let number: u16 = if j < 3 && i < 5 { 5 * j + i } else { 999 };
+            bytes.extend(number.to_be_bytes());
+        }
+        fs::write(array.join(format!("c/{row}/{column}")), bytes).unwrap();
+    }
+}
+
+#[test]
+fn chunks_are_put_together() {
+    let folder = tempfile::tempdir().unwrap();
+    chunked(folder.path(), |document| document);
+    let read = read_zarr(folder.path().join("s.zarr"), &Limits::default()).unwrap();
+    let [one] = read.as_slice() else { panic!("one array") };
+    assert_eq!((one.group.as_str(), one.name.as_str()), ("", "depth"));
+    let Values::Wholes(image) = &one.array.planes[0] else { panic!("wholes") };
+    assert_eq!((image.width(), image.height()), (5, 3));
+    assert_eq!(image.cells(), (0..15).collect::<Vec<u32>>());
+}
+
+#[test]
+fn what_is_not_read_is_refused_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = folder.path().join("s.zarr");
+    let with = |from: &str, to: &str| {
+        chunked(folder.path(), |document| {
+            assert!(document.contains(from));
+            document.replace(from, to)
+        });
+        refusal(&store)
+    };
+    let bytes = r#"{"name": "bytes", "configuration": {"endian": "big"}}"#;
+    let zstd = format!(r#"{bytes}, {{"name": "zstd", "configuration": {{"level": 0, "checksum": false}}}}"#);
+    assert_eq!(
+        with(bytes, &zstd),
+        "depth: codecs: bytes, zstd; expected bytes alone: write the store without compression"
+    );
+    assert!(with("uint16", "complex64").contains("data_type: \"complex64\"; expected bool, an integer"));
+    assert!(with("[2, 2]", "[2, 0]").contains("chunk_shape: [2, 0]"));
+    assert!(with("[3, 5]", "[4294967296, 4294967296]").contains("shape: [4294967296, 4294967296]"));
+    assert!(with("[3, 5]", "[9, 5]").contains("chunk c/2/0: not there; expected a file for every chunk"));
+    assert!(with("\"shape\"", "\"form\"").contains("zarr.json: missing field `shape`"));
+    chunked(folder.path(), |document| document);
+    fs::write(store.join("depth/c/1/2"), [0; 7]).unwrap();
+    assert!(refusal(&store).contains("chunk c/1/2: 7 bytes; expected the 8 of its shape"));
+    fs::remove_file(store.join("zarr.json")).unwrap();
+    assert!(refusal(&store).contains("no zarr.json; expected a store of version 3 that is complete"));
+    fs::write(store.join(".zgroup"), "{}").unwrap();
+    assert!(refusal(&store).contains("a store of version 2; expected a store of version 3"));
+}

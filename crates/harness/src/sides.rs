@@ -1,0 +1,77 @@
+//! Two recordings that are to be compared, each as what is declared and its own `candidate.json` say.
+
+use std::path::{Path, PathBuf};
+
+use raypencil_files::{
+    Channels, Declared, DeclaredChannel, FileError, Limits, add_ray_sets, read_channels_as,
+};
+use raypencil_judge::{Conventions, Recorded, RecordingError};
+use raypencil_pack::Declarations;
+use raypencil_scene::{Precision, Progress, Scene};
+
+/// A recording that is one side of a comparison.
+#[derive(Debug, Clone)]
+pub struct Side {
+    /// The file or folder.
+    pub path: PathBuf,
+    /// Its channels.
+    pub channels: Channels,
+    declared: Declared,
+    conventions: Conventions,
+}
+
+impl Side {
+    /// The same as answers about a scene, for the referee.
+    ///
+    /// # Errors
+    /// Names the file, the channel and the cell that breaks the conventions.
+    pub fn recorded(&self, scene: &Scene, precision: Precision) -> Result<Recorded, RecordingError> {
+        let channels = Recorded::channels(&self.path, scene, &self.declared)?;
+        Recorded::of_folder(&self.path, scene, precision, &channels, self.conventions)
+    }
+}
+
+/// Reads two recordings. What is declared concerns each that has such a channel, and must concern one of them; what a note
+/// says concerns its own recording.
+///
+/// # Errors
+/// A file that cannot be read, a note too; something declared that is true of neither.
+pub fn read_sides(
+    paths: [&Path; 2],
+    declarations: &Declarations,
+    progress: &dyn Progress,
+) -> Result<[Side; 2], FileError> {
+    let read = |path: &Path| -> Result<Side, FileError> {
+        progress.stage(&format!("{}: reading", path.display()));
+        let of_note = Declarations::default().with_note_of(path)?;
+        let of_side = declarations.clone().with_note_of(path)?;
+        let declared = Declared { may_be_absent: true, ..of_side.declared() };
+        let limits = Limits::default();
+        let mut channels = read_channels_as(path, &limits, &declared, None)?;
+        let is_there = |one: &DeclaredChannel| channels.used.maps.contains(&one.map);
+        if let Some(missing) = of_note.channels.iter().find(|one| !is_there(one)) {
+            refuse(path, missing)?;
+        }
+        add_ray_sets(&mut channels, path, &limits)?;
+        let conventions = of_side.conventions();
+        Ok(Side { path: path.to_path_buf(), declared: declared.used(&channels.used), channels, conventions })
+    };
+    let sides = [read(paths[0])?, read(paths[1])?];
+    let [a, b] = &sides;
+    let is_there =
+        |one: &DeclaredChannel| [a, b].iter().any(|side| side.channels.used.maps.contains(&one.map));
+    if let Some(missing) = declarations.channels.iter().find(|one| !is_there(one)) {
+        refuse(&a.path, missing)?;
+    }
+    if declarations.scale.is_some() && !a.channels.used.scale && !b.channels.used.scale {
+        let strict = Declared { scale: declarations.scale, may_be_absent: false, ..a.declared.clone() };
+        read_channels_as(&a.path, &Limits::default(), &strict, None)?;
+    }
+    Ok(sides)
+}
+
+/// The message that a recording does not have a declared channel.
+fn refuse(path: &Path, missing: &DeclaredChannel) -> Result<(), FileError> {
+    let strict = Declared { channels: vec![missing.clone()], ..Declared::default() };
+    read_channels_as(path, &Limits::default(), &strict, None).map(|_| ())
+}
