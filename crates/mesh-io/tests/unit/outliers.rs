@@ -157,6 +157,12 @@ fn what_can_be_ground_passes() {
     ] {
         assert_eq!(posts(&heights).constant(), None, "{name}");
     }
+    // Slopes of 232 m with two posts 168 m above them: less than the rest is high. At 500 m they stand out.
+    let mut towers = grid(|x, y| 10.0 * x + 0.1 * y);
+    put(&mut towers, 3..5, 7..8, 400.0);
+    assert_eq!((posts(&towers).constant(), posts(&towers).spikes()), (None, None));
+    put(&mut towers, 3..5, 7..8, 500.0);
+    assert_eq!(posts(&towers).constant().map(|found| found.height), Some(500.0));
     // A yard of 10 m, 1 cm apart, with a box of 2 m on a floor: steep, but no leap.
     let floor: Vec<f64> =
         (0..1000 * 100).map(|place| if (300..360).contains(&(place % 1000)) { 2.0 } else { 0.0 }).collect();
