@@ -208,6 +208,15 @@ const MISTAKES: &[Mistake] = &[
             }
         },
     },
+    Mistake { words: "0 means no hit: declare --miss 0", undo: |trial| misses_at(trial, 0.0, f64::INFINITY) },
+    Mistake {
+        words: "-1 means no hit: declare --miss -1",
+        undo: |trial| misses_at(trial, -1.0, f64::INFINITY),
+    },
+];
+
+/// Mistakes about what is too near for a sensor.
+const ABOUT_SENSORS: &[Mistake] = &[
     Mistake {
         words: "rays pass through what is nearer than the sensor's shortest range: the nearest surface decides",
         undo: |trial| {
@@ -229,16 +238,21 @@ const MISTAKES: &[Mistake] = &[
         words: "-Inf means no hit: declare --miss -inf",
         undo: |trial| misses_at(trial, f64::NEG_INFINITY, f64::INFINITY),
     },
-    Mistake { words: "0 means no hit: declare --miss 0", undo: |trial| misses_at(trial, 0.0, f64::INFINITY) },
-    Mistake {
-        words: "-1 means no hit: declare --miss -1",
-        undo: |trial| misses_at(trial, -1.0, f64::INFINITY),
-    },
-    Mistake {
-        words: "arithmetic is of single precision: declare --arithmetic f32",
-        undo: |trial| trial.precision = Precision::F32,
-    },
 ];
+
+/// Single precision excuses much: it is not half of an explanation.
+const PRECISION: Mistake = Mistake {
+    words: "arithmetic is of single precision: declare --arithmetic f32",
+    undo: |trial| trial.precision = Precision::F32,
+};
+
+impl Trial {
+    /// Whether a ray is one of a sensor with a shortest range, or an answer says that it is.
+    fn is_about_sensors(&self) -> bool {
+        let says = |distances: &Option<Vec<f64>>| distances.iter().flatten().any(|t| *t == f64::NEG_INFINITY);
+        self.rays.iter().any(|ray| ray.t_blind > 0.0) || says(&self.stated.t) || says(&self.stated.range)
+    }
+}
 
 /// Looks for the mistake, or the two, without which hardly any ray is wrong. `wrong` are the indices of wrong rays.
 pub(super) fn explain(
@@ -277,15 +291,15 @@ pub(super) fn explain(
         tried: indices.len(),
     };
     let is_explained = |left: usize| left * 100 <= before;
+    let about_sensors: &[Mistake] = if trial.is_about_sensors() { ABOUT_SENSORS } else { &[] };
+    let mistakes = || MISTAKES.iter().chain(about_sensors);
     let singles: Vec<(&Mistake, usize)> =
-        MISTAKES.iter().map(|mistake| (mistake, wrong_of(&undone(&trial, mistake)))).collect();
+        mistakes().chain([&PRECISION]).map(|mistake| (mistake, wrong_of(&undone(&trial, mistake)))).collect();
     if let Some((mistake, left)) =
         singles.iter().min_by_key(|(_, left)| *left).filter(|(_, left)| is_explained(*left))
     {
         return Some(explanation(vec![mistake.words], *left));
     }
-    // Single precision excuses much: it is not half of an explanation.
-    let mistakes = || MISTAKES.iter().take(MISTAKES.len() - 1);
     let mut best: Option<(Vec<&'static str>, usize)> = None;
     for (k, first) in mistakes().enumerate() {
         let once = undone(&trial, first);

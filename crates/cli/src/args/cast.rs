@@ -27,8 +27,8 @@ pub(crate) struct Cast {
     #[arg(value_name = "RAYS", conflicts_with = "ray")]
     pub(crate) rays: Option<PathBuf>,
 
-    /// A ray by its numbers, separated by commas: ox,oy,oz,dx,dy,dz and if wanted t_min,t_max[,t_blind]. Its answers are printed.
-    /// May be repeated.
+    /// A ray by its numbers, separated by commas: ox,oy,oz,dx,dy,dz and if wanted t_min,t_max, then t_blind. Its answers are
+    /// printed. May be repeated.
     #[arg(long, value_name = "NUMBERS", value_parser = ray, allow_hyphen_values = true)]
     pub(crate) ray: Vec<CastRay>,
 

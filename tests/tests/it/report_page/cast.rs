@@ -125,3 +125,31 @@ fn answers_alone_have_one_side() {
     );
     page.assert_quiet();
 }
+
+#[test]
+fn what_is_too_near_is_told_from_a_miss() {
+    let (mesh, mut rays) = question();
+    // The first ray meets the square at t = 3.45: a sensor that is blind before t = 4 finds it too near.
+    rays.rays[0].t_blind = 4.0;
+    let answers = cast(&mesh, &rays.rays, Sides::Both, Questions::default(), &Silent);
+    assert_eq!(answers.too_near(), 1);
+    let page = CastPage {
+        title: "rays on a square",
+        facts: &[],
+        shape: &rays.shape,
+        rays: &rays.rays,
+        answers: &answers,
+        set: None,
+        compared: None,
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    write_cast_page(folder.path(), &page).expect("a page");
+    let Some(page) = open(&folder.path().join("report.html"), "#rays/0,0/range.T", (1280, 1000)) else {
+        return;
+    };
+    page.wait("document.querySelector('[data-readout-root]')?.dataset.state === 'ready'");
+    assert_eq!(page.text("document.querySelector('[data-readout=\"a\"]').textContent"), "too near");
+    assert_eq!(page.text("document.querySelector('[data-readout=\"a\"]').dataset.value"), "-Infinity");
+    assert!(page.text("document.body.textContent").contains("1 too near"));
+    page.assert_quiet();
+}
