@@ -188,7 +188,7 @@ fn absent_channels_are_not_compared_and_unknown_ones_are_named() {
     }
     assert_trouble(
         &check(folder.path(), "pyramids", &[]),
-        &["no channel of this scene", "camera/rangeOfMine"],
+        &["no channel of this scene", "found camera.exr (96 x 72): rangeOfMine (single)"],
     );
 }
 

@@ -10,6 +10,7 @@ use exr::prelude::{
 };
 use raypencil::Image;
 use raypencil::io::{Limits, Values, read_npy, write_npy};
+use raypencil_tests::schema::schema_faults;
 use serde_json::json;
 use tempfile::TempDir;
 use tiff::encoder::{TiffEncoder, colortype};
@@ -147,7 +148,10 @@ fn parts_and_grey_colours_are_named() {
     let ((depths, size), (ranges, _)) = (exact("depth.Z"), exact("range.T"));
     let grey = ["R", "G", "B"].map(|name| (name, singles(&ranges)));
     write_parts(&file, size, &[("ViewLayer.Depth", vec![("Z", singles(&depths))]), ("grey", grey.to_vec())]);
-    assert_trouble(&check(folder.path(), "hard", &[]), &["ViewLayer.Depth/Z (single), grey/B (single)"]);
+    assert_trouble(
+        &check(folder.path(), "hard", &[]),
+        &["grey/B (single), grey/G (single), grey/R (single), ViewLayer.Depth/Z (single)"],
+    );
     for depth in ["ViewLayer.Depth/Z", "ViewLayer.Depth.Z", "Z"] {
         let depth = format!("depth.Z={depth}");
         let output = check(folder.path(), "hard", &["--channel", &depth, "--channel", "range.T=R"]);
@@ -188,7 +192,12 @@ fn depth_images_of_16_bits_are_judged_in_their_unit() {
         let output = check(folder.path(), "hard", &["--scale", "0.001", "--json"]);
         assert_passes(&output);
         let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-        assert_eq!(document["sensors"][0]["quantities"][1]["storage"], "steps of 0.001 m", "{name}");
+        let quantities = document["sensors"][0]["quantities"].as_array().unwrap();
+        let depth = quantities.iter().find(|one| one["quantity"] == "depth").unwrap();
+        assert_eq!(depth["storage"], "steps of 0.001 m", "{name}");
+        let schema = include_str!("../../../../../docs/formats/check.schema.json");
+        let schema: serde_json::Value = serde_json::from_str(schema).unwrap();
+        assert_eq!(schema_faults(&schema, &document), Vec::<String>::new());
         let shown = text(&check(folder.path(), "hard", &["--scale", "0.001"]).stdout);
         assert!(shown.contains("rays agree to steps of 0.001 m: "), "{shown}");
         assert!(shown.contains("Errors below half a step, 0.0005 m, cannot be seen"), "{shown}");
@@ -254,14 +263,14 @@ fn every_format_of_render_is_read_again() {
     }
     let same = |a: &str, b: &str, more: &[&str]| {
         let shown = screen(folder.path(), &[&["diff", a, b], more].concat(), 0);
-        assert!(shown.contains("PASS 90 channels compared, the same in every cell"), "{a}, {b}: {shown}");
+        assert!(shown.contains("PASS 118 channels compared, the same in every cell"), "{a}, {b}: {shown}");
     };
     same("npy", "npz", &[]);
     same("npy", "zarr", &[]);
     same("npz", "zarr/maps.zarr", &[]);
     same("exr", "exr-each", &[]);
     let shown = screen(folder.path(), &["diff", "zarr", "exr-each", "--fail-ulp", "0.5"], 0);
-    assert!(shown.contains("PASS 90 channels compared"), "{shown}");
+    assert!(shown.contains("PASS 118 channels compared"), "{shown}");
     let candidates = ["validate", &scene, "--candidate", "npz", "--candidate", "zarr", "-o", "out"];
     assert!(screen(folder.path(), &candidates, 0).contains("2 candidates agree"));
 }
