@@ -112,6 +112,7 @@ fn unknown(report: &Value) -> String {
     let mut samples: Vec<String> = Vec::new();
     samples.extend(report["nodata"].as_f64().map(|sample| format!("{sample} as the file says")));
     let given = report["nodata_given"].as_array().into_iter().flatten();
+    let given = given.filter_map(Value::as_f64);
     samples.extend(given.map(|sample| format!("{sample} as --nodata says")));
     let samples = if samples.is_empty() { String::new() } else { format!(" (NaN; {})", samples.join("; ")) };
     format!("{}{samples}", report["unknown_posts"])

@@ -73,7 +73,7 @@ fn an_elevation_model_becomes_a_terrain() {
         "map            the file does not say",
         "unit           metre (EPSG:9001), by default: the file does not say",
         "z unit         metre (EPSG:9001), by default: the file does not say",
-        "unknown posts  1 (NaN; -9999.0 as the file says)",
+        "unknown posts  1 (NaN; -9999 as the file says)",
         "registration   a pixel is an area, by default: the file does not say",
         "heights        0.0 to 42.0 m",
         "faces          22, through all posts",
@@ -227,7 +227,7 @@ fn what_a_model_does_not_say_is_said_by_options() {
         "heights        -12.4968",
         "unit           foot (EPSG:9002), 0.3048 m, as --unit says",
         "z unit         US survey foot (EPSG:9003), 0.3048006096012192 m, as --z-unit says; depths, which became heights",
-        "unknown posts  2 (NaN; -9999.0 as the file says; 42.0 as --nodata says)",
+        "unknown posts  2 (NaN; -9999 as the file says; 42 as --nodata says)",
     ] {
         assert!(out.contains(line), "{line} is not in:\n{out}");
     }
