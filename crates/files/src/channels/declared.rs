@@ -160,7 +160,7 @@ impl Declared {
                     let paths: Vec<&str> = channels
                         .iter()
                         .filter_map(|&index| {
-                            found[index].names.iter().max_by_key(|name| name.len()).map(String::as_str)
+                            found[index].names.iter().rev().max_by_key(|name| name.len()).map(String::as_str)
                         })
                         .collect();
                     return refuse(

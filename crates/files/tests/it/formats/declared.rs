@@ -12,6 +12,9 @@ use raypencil_files::{
 };
 use raypencil_scene::Image;
 
+/// Name, view, number of columns, and channels with the number of all their cells.
+type Part<'a> = (&'a str, &'a str, usize, &'a [(&'a str, f32)]);
+
 struct Folder(tempfile::TempDir);
 
 impl Folder {
@@ -35,8 +38,8 @@ impl Folder {
     }
 
     /// An EXR of several parts: their names, views, numbers of columns, and channels.
-    fn parts(&self, name: &str, parts: &[(&str, &str, usize, &[(&str, f32)])]) {
-        let layer = |(name, view, width, channels): &(&str, &str, usize, &[(&str, f32)])| {
+    fn parts(&self, name: &str, parts: &[Part<'_>]) {
+        let layer = |(name, view, width, channels): &Part<'_>| {
             let channel = |(name, number): &(&str, f32)| {
                 AnyChannel::new(*name, FlatSamples::F32(vec![*number; *width]))
             };
