@@ -119,7 +119,7 @@ fn at_exactly_the_shortest_range_a_surface_is_measured() {
 fn plate_and_wall() -> (Triangles, RayArray) {
     let ray = |i: usize, j: usize| {
         let slope = |k: usize| (2.0 * k as f64 - 7.0) / 16.0;
-        let along = DVec3::new(1.0, slope(i), slope(j)) * if i % 2 == 0 { 1.0 } else { 0.5 };
+        let along = DVec3::new(1.0, slope(i), slope(j)) * if i.is_multiple_of(2) { 1.0 } else { 0.5 };
         let ray = CastRay::new(DVec3::ZERO, along);
         match j {
             8 => CastRay { t_min: 0.6 * (i % 3) as f64, t_max: 25.0, ..ray },
