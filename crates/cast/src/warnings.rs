@@ -5,17 +5,17 @@
 use std::collections::HashMap;
 
 use glam::DVec3;
+use raypencil_referee::ExactCast;
 use raypencil_report::{count, counted, number};
 use raypencil_scene::{CastRay, NamedRaySet, Side, Sides, Triangles};
 use raypencil_survey::{TerrainShape, Warning, WarningCode, lies_on_its_side, terrain_too_large};
-use raypencil_tracer::TracerCast;
 
 use crate::answers::Answers;
 
 /// Largest share of backs among the first hits, tuned: one half, as for a sensor.
 const MAX_BACK_SHARE: f64 = 0.5;
 
-/// Rays that are traced once more, at most, where none hits: with other limits, and against both sides.
+/// Rays that are asked once more, at most, where none hits: with other limits, and against both sides.
 const MAX_TRIED_RAYS: usize = 4096;
 
 /// Warnings about the rays of a set, or of no set, whose answers are known.
@@ -88,17 +88,16 @@ fn reach(ray: &CastRay) -> f64 {
     ray.t_max * ray.direction.length()
 }
 
-/// Why no ray hits, as far as tracing some of them again can tell.
+/// Why no ray hits, as far as asking some of them again can tell. The answers are exact.
 fn nothing_hit(mesh: &Triangles, rays: &[CastRay], sides: Sides) -> String {
     let none = match rays.len() {
         1 => "the ray does not hit the mesh".to_string(),
         rays => format!("none of the {} rays hits the mesh", count(rays as u64)),
     };
-    let tracer = TracerCast::new(mesh);
-    let mut traverser = tracer.traverser();
+    let exact = ExactCast::new(mesh);
     let step = rays.len().div_ceil(MAX_TRIED_RAYS);
     let tried: Vec<&CastRay> = rays.iter().step_by(step).collect();
-    let mut nearest = |limited: bool, sides: Sides| {
+    let nearest = |limited: bool, sides: Sides| {
         let mut hits = 0_u64;
         let mut nearest: Option<(f64, f64)> = None;
         for &ray in &tried {
@@ -107,10 +106,13 @@ fn nothing_hit(mesh: &Triangles, rays: &[CastRay], sides: Sides) -> String {
             } else {
                 CastRay { t_min: 0.0, t_max: f64::INFINITY, t_blind: 0.0, ..*ray }
             };
-            let Some(hit) = traverser.first(&asked, sides) else { continue };
+            let Some(hit) = exact.first(&asked, sides).first().and_then(|face| exact.values(&asked, *face))
+            else {
+                continue;
+            };
             hits += 1;
-            if nearest.is_none_or(|(range, _)| hit.range < range) {
-                nearest = Some((hit.range, reach(ray)));
+            if nearest.is_none_or(|(range, _)| hit.range.double < range) {
+                nearest = Some((hit.range.double, reach(ray)));
             }
         }
         nearest.map(|(range, reach)| (hits, range, reach))

@@ -218,9 +218,11 @@ pub fn check_pack_by(
     // The candidate before the answers, so that its faults are reported soon.
     progress.stage("reading the candidate");
     let declared = declarations.clone().with_note(note(candidate, &scene)?.as_ref());
-    let channels = Recorded::channels(candidate, &scene, &declared.declared())?;
-    let recorded =
-        Recorded::of_folder(candidate, &scene, declared.precision(), &channels, declared.conventions())?;
+    let recorded = {
+        // The channels go once they are taken over: else the check would take half as much memory again.
+        let channels = Recorded::channels(candidate, &scene, &declared.declared())?;
+        Recorded::of_folder(candidate, &scene, declared.precision(), &channels, declared.conventions())?
+    };
 
     let truth = match (manifest.kind, manifest.blind_seed) {
         (PackKind::Blind, Some(seed)) => {

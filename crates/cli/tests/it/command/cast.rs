@@ -259,20 +259,23 @@ fn a_scan_of_a_room_in_millimetres_is_told_and_scaled() {
     // A room of 4 m by 4 m in millimetres, y up, and a spinning head in metres within it.
     let corner = |k: u32| {
         let [x, y, z] = [k & 1, k >> 1 & 1, k >> 2].map(f64::from);
-        format!("v {} {} {}\n", 4000.0 * x - 2000.0, 2500.0 * y, 4000.0 * z - 2000.0)
+        format!("v {} {} {}\n", 4000.0 * x - 2000.0, 2500.0 * y - 1200.0, 4000.0 * z - 2000.0)
     };
     let room: String = (0..8).map(corner).collect();
     let squares = "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n";
     fs::write(folder.path().join("room.obj"), room + squares).unwrap();
-    let scan = "[[rays]]\nname = \"scan\"\nspinning = { preset = \"vlp-16\", steps = 36 }\nposition_m = [0, 0, 1.2]\n";
+    let scan =
+        "[[rays]]\nname = \"scan\"\nspinning = { preset = \"vlp-16\", steps = 36 }\nposition_m = [0, 0, 0]\n";
     fs::write(folder.path().join("scan.toml"), scan).unwrap();
     let cast = |more: &[&str]| raypencil(folder.path(), &[&["cast", "room.obj", "scan.toml"], more].concat());
     let nothing = cast(&["-o", "nothing"]);
     assert_eq!(nothing.status.code(), Some(1), "{}", text(&nothing.stderr));
     let told = text(&nothing.stderr);
-    for words in
-        ["scan: none of the 576 rays hits the mesh", "the nearest at 1", "the limit is 100", "millimetres"]
-    {
+    for words in [
+        "scan: none of the 576 rays hits the mesh",
+        "the nearest at 1200 where the limit is 100",
+        "millimetres",
+    ] {
         assert!(told.contains(words), "{words} is not in\n{told}");
     }
     let summary = fs::read_to_string(folder.path().join("nothing/summary.json")).unwrap();
@@ -321,7 +324,7 @@ fn polygons_that_are_not_convex_or_cross_themselves_are_told() {
     ] {
         assert!(inspected.contains(words), "{words} is not in\n{inspected}");
     }
-    write("hourglass.obj", "v 0 0 0\nv 4 4 0\nv 4 0 0\nv 0 4 0.5\nv 9 9 9\nf 1 2 3 4\nf 1 2 3\n");
+    write("hourglass.obj", "v 0 0 0\nv 4 4 0\nv 4 0 0\nv 0 5 0\nv 9 4 2\nf 1 2 3 4\nf 1 3 2 5\n");
     let told = raypencil(folder.path(), &["cast", "hourglass.obj", "--ray", "1,1,9,0,0,-1"]);
     let words = "warning: 1 polygon of the file crosses itself, the first is polygon 0 (line 6)";
     assert!(text(&told.stderr).contains(words), "{}", text(&told.stderr));
