@@ -1,14 +1,7 @@
 // Pictures of rasters: one canvas pixel for each cell, with the scale it was coloured by.
 
-import {
-  CLASS_LOOKS,
-  MAP_COLOURS,
-  ONE_SIDED_COLOUR,
-  TOO_NEAR_COLOUR,
-  causeLook,
-  colourTable,
-} from './colour.js';
-import { faceColour, packedColour, packedHex } from './colour.js';
+import { CLASS_LOOKS, MAP_COLOURS, ONE_SIDED_COLOUR, TOO_NEAR_COLOUR, causeLook } from './colour.js';
+import { colourTable, faceColour, packedColour, packedHex } from './colour.js';
 import { placeOn, scaleOfDifferences, scaleOfValues, statisticsOf } from './limits.js';
 import { NOTHING, NO_CODE } from './page_model.js';
 import { NO_NAME, ONE_SIDED, SAME_NAME, differenceRaster } from './difference.js';
