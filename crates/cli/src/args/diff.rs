@@ -13,7 +13,7 @@ use crate::parsers::{percent, precision, setting, threshold};
 #[command(after_help = "Examples:
   # Two recordings, with 1 nm of tolerance.
   raypencil diff out/pyramids/scanline out/pyramids/tracer --fail 1e-9
-  # A depth image of a simulator against our depths; the option is for the side that has such a channel.
+  # A simulator's depth image against our depths; the option is for the side with such a channel.
   raypencil diff depth.tif out/maps --channel camera/depth.Z=depth --fail 1e-3 --shared-only
   # The referee rules where they differ.
   raypencil diff theirs ours --scene ground.glb -o out/diff")]

@@ -273,7 +273,7 @@ fn a_scan_of_a_room_in_millimetres_is_told_and_scaled() {
     let told = text(&nothing.stderr);
     for words in [
         "scan: none of the 576 rays hits the mesh",
-        "the nearest at 1200 where the limit is 100",
+        "the nearest at 2000 where the limit is 100",
         "millimetres",
     ] {
         assert!(told.contains(words), "{words} is not in\n{told}");
@@ -341,7 +341,7 @@ fn polygons_that_are_not_convex_or_cross_themselves_are_told() {
     assert_eq!((&json["passes"], &json["polygons"]["crossing"]["first"]["line"]), (&false.into(), &6.into()));
     // A scene on such a file says it too, as do its summary and its page.
     let scene = "version = 1\nterrain = { file = \"hourglass.obj\" }\nvehicle = { position_m = [1, 1, 2] }\n\
-                 camera = { width_px = 16, height_px = 16 }\nbeam = { columns = 16, rows = 2 }\n";
+                 camera = { width_px = 16, height_px = 16 }\nbeam = [{ columns = 16, rows = 2 }]\n";
     write("scene.toml", scene);
     let shown = raypencil(folder.path(), &["validate", "scene.toml", "--allow-empty", "-o", "out"]);
     assert!(text(&shown.stdout).contains("crosses itself"), "{}", text(&shown.stdout));
