@@ -10,7 +10,8 @@
 //! gltf  limits, container, json               the chunks of a GLB, and its JSON as far as it can be trusted
 //!       buffers -> elements -> accessors      bytes, elements of views, typed numbers
 //!       primitives                            triangles
-//!       placement, instances -> nodes         transforms in double precision, and where each mesh stands
+//!       placement -> transform
+//!       instances -> nodes                    transforms in double precision, and where each mesh stands
 //!       nodes, materials -> assemble          one list of vertices and faces
 //!       stated_origin -> read                 a mesh with its scene origin
 //!       exact                                 triangles in the axes of the file, in double precision

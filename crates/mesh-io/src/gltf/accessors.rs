@@ -6,18 +6,13 @@ use gltf::json::{Index, Root};
 use raypencil_files::Fault;
 
 use crate::gltf::buffers::{Buffers, missing_reference};
-use crate::gltf::elements::{Elements, whole};
+use crate::gltf::elements::{Elements, place, whole};
 use crate::gltf::json::{QUANTIZATION, is_used};
 
 /// The accessor at `index`.
 pub(super) fn accessor(root: &Root, index: Index<Accessor>) -> Result<&Accessor, Fault> {
     let index = index.value();
     root.accessors.get(index).ok_or_else(|| missing_reference(place(index), root.accessors.len()))
-}
-
-/// Place of an accessor in messages.
-pub(super) fn place(index: usize) -> String {
-    format!("accessor {index}")
 }
 
 /// Vertex positions: VEC3 of F32, or of whole numbers where KHR_mesh_quantization is used; interleaved or not, all finite.

@@ -8,7 +8,6 @@ use gltf::json::accessor::{Accessor, ComponentType};
 use gltf::json::validation::Checked;
 use raypencil_files::Fault;
 
-use crate::gltf::accessors::place;
 use crate::gltf::buffers::Buffers;
 use crate::gltf::json::is_used;
 
@@ -19,6 +18,11 @@ const MAX_ZEROS: u64 = 1 << 20;
 /// Extensions that hold the bytes of an accessor elsewhere. Without them its zeros are no zeros.
 const COMPRESSIONS: [&str; 3] =
     ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
+
+/// Place of an accessor in messages.
+pub(super) fn place(index: usize) -> String {
+    format!("accessor {index}")
+}
 
 /// Elements of an accessor, checked to lie within their buffer view.
 pub(super) struct Elements<'a> {

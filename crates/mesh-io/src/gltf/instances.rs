@@ -3,27 +3,11 @@
 use glam::DAffine3;
 use gltf::json::{Accessor, Index, Root};
 use raypencil_files::Fault;
-use serde::Deserialize;
 
 use crate::gltf::accessors::instance_vectors;
 use crate::gltf::buffers::Buffers;
-use crate::gltf::nodes::local;
-use crate::gltf::placement::Placement;
-
-/// The extension of a node.
-#[derive(Deserialize)]
-pub(super) struct Instancing {
-    attributes: Attributes,
-}
-
-/// Accessors of where the instances stand, below their node.
-#[derive(Deserialize)]
-#[serde(rename_all = "UPPERCASE")]
-struct Attributes {
-    translation: Option<u32>,
-    rotation: Option<u32>,
-    scale: Option<u32>,
-}
+use crate::gltf::placement::{Instancing, Placement};
+use crate::gltf::transform::local;
 
 /// Transform of each instance to its node's axes. `place` is the node in messages.
 pub(super) fn instances(

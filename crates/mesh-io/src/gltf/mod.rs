@@ -18,6 +18,7 @@ mod placement;
 mod primitives;
 mod read;
 mod stated_origin;
+mod transform;
 mod write;
 
 pub(crate) use assemble::WITHOUT_MATERIAL;

@@ -3,8 +3,6 @@
 use raypencil_files::Fault;
 use serde::Deserialize;
 
-use crate::gltf::instances::Instancing;
-
 /// Transform of a node as its JSON states it; absent parts are `None`.
 #[derive(Deserialize)]
 pub(super) struct Placement {
@@ -21,6 +19,21 @@ pub(super) struct Placement {
 struct Extensions {
     #[serde(rename = "EXT_mesh_gpu_instancing")]
     instancing: Option<Instancing>,
+}
+
+/// Instances of a node's mesh.
+#[derive(Deserialize)]
+pub(super) struct Instancing {
+    pub(super) attributes: InstanceAttributes,
+}
+
+/// Accessors of where the instances stand, below their node.
+#[derive(Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub(super) struct InstanceAttributes {
+    pub(super) translation: Option<u32>,
+    pub(super) rotation: Option<u32>,
+    pub(super) scale: Option<u32>,
 }
 
 impl Placement {
