@@ -28,7 +28,7 @@
 //! let rays = rays_from_bytes(b"0.5,0.5,4,0,0,-1", "here".as_ref())?;
 //! let questions = Questions { all: true, ..Questions::default() };
 //! let answers = cast(&mesh, &rays.rays, Sides::Both, questions, &Silent);
-//! let first = answers.first[0].as_ref().unwrap();
+//! let first = answers.first[0].hit().unwrap();
 //! assert_eq!((first.face.0, first.t, first.ties), (2, 3.0, 2));
 //! assert_eq!(answers.all.unwrap()[0].iter().map(|group| group.t).collect::<Vec<_>>(), [3.0, 4.0]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
