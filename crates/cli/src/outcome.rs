@@ -65,7 +65,7 @@ pub(crate) enum Trouble {
     #[error("{error}")]
     Candidate {
         /// The error.
-        error: CandidateError,
+        error: Box<CandidateError>,
         /// What to declare, if that may help.
         #[help]
         help: Option<String>,
@@ -107,6 +107,6 @@ impl From<CheckError> for Trouble {
 impl From<CandidateError> for Trouble {
     fn from(error: CandidateError) -> Self {
         let help = error.help();
-        Self::Candidate { error, help }
+        Self::Candidate { error: Box::new(error), help }
     }
 }

@@ -60,10 +60,10 @@ pub enum RecordingError {
     Declared {
         /// The folder.
         folder: PathBuf,
-        /// The channel.
-        channel: String,
+        /// The channel. Short texts in boxes, so that the error stays small: it is passed along by value.
+        channel: Box<str>,
         /// The map.
-        map: String,
+        map: Box<str>,
         /// What was found.
         found: String,
         /// What was expected.

@@ -273,7 +273,13 @@ fn check_declared(
 ) -> Result<(), RecordingError> {
     let refuse = |found: String, expected: String| {
         let (folder, channel, map) = (folder.to_path_buf(), channel.clone(), map.clone());
-        Err(RecordingError::Declared { folder, channel, map, found, expected: shortened(expected) })
+        Err(RecordingError::Declared {
+            folder,
+            channel: channel.into(),
+            map: map.into(),
+            found,
+            expected: shortened(expected),
+        })
     };
     let (sensor, name) = match map.split_once('/') {
         Some((sensor, name)) => (Some(sensor), name),

@@ -70,13 +70,10 @@ impl PolygonFacts {
 
     /// Adds the lines of the polygons that are named.
     pub(super) fn with_lines(mut self, line: impl Fn(u32) -> Option<usize>) -> Self {
-        for place in [
-            self.crossing.as_mut().map(|found| &mut found.first),
-            self.bent.as_mut().map(|found| &mut found.worst),
-        ] {
-            if let Some(place) = place {
-                place.line = line(place.polygon);
-            }
+        let crossing = self.crossing.as_mut().map(|found| &mut found.first);
+        let bent = self.bent.as_mut().map(|found| &mut found.worst);
+        for place in crossing.into_iter().chain(bent) {
+            place.line = line(place.polygon);
         }
         self
     }
