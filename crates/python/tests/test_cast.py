@@ -82,7 +82,7 @@ def test_the_ends_of_a_ray_belong_to_it(cube: Mesh) -> None:
 
 def test_what_is_before_the_shortest_range_is_too_near(cube: Mesh) -> None:
     # The top at z = 1 is met at t = 1, the bottom at t = 2, by a ray down by 2 for each t; the last ray misses.
-    origins = [[0.25, 0.5, 3], [0.25, 0.5, 3], [9, 9, 3]]
+    origins = np.array([[0.25, 0.5, 3], [0.25, 0.5, 3], [9, 9, 3]])
     blind = [1.5, 1.0, 1.5]
     answers = cast(cube, origins, [0, 0, -2], t_blind=blind, query=("any", "all"), margins=True)
     assert answers.too_near.tolist() == [True, False, False] and answers.hit.tolist() == [False, True, False]

@@ -160,7 +160,7 @@ def _explained(
         _raypencil.pack_rays(core, np.ascontiguousarray(rays[some]), [len(some)], pack, fronts_only, None)
         for name, array in stated.items():
             np.save(candidate / f"{name}.npy", array[some])
-        why = _raypencil.check(pack, candidate, arithmetic)["why"]
+        why = _raypencil.check(pack, candidate, [], None, arithmetic)["why"]
     return None if why is None else said(why)
 
 

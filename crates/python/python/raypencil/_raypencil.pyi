@@ -160,6 +160,8 @@ def validate(
     switches: _Pairs,
     judge_all: bool,
     candidates: Sequence[_Path],
+    channels: _Pairs,
+    scale: float | None,
     allow_empty: bool,
     output: _Path | None = None,
     on_stage: _OnStage = None,
@@ -183,6 +185,8 @@ def pack_rays(
 def check(
     pack: _Path,
     candidate: _Path,
+    channels: _Pairs,
+    scale: float | None,
     arithmetic: str | None = None,
     miss: float | None = None,
     no_faces: bool = False,
@@ -193,6 +197,8 @@ def check(
 def diff(
     a: _Path,
     b: _Path,
+    channels: _Pairs,
+    scale: float | None,
     fail: float,
     fail_relative: float,
     fail_ulp: float,
@@ -204,7 +210,12 @@ def diff(
     output: _Path | None = None,
     on_stage: _OnStage = None,
 ) -> tuple[bool, str, str]: ...
-def read_recording(path: _Path, on_stage: _OnStage = None) -> _Arrays: ...
+def read_recording(
+    path: _Path,
+    channels: _Pairs,
+    scale: float | None,
+    on_stage: _OnStage = None,
+) -> _Arrays: ...
 def generate_ground(
     preset: str,
     seed: int,
