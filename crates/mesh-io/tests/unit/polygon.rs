@@ -205,6 +205,10 @@ fn two_thousand_polygons_are_covered_in_any_plane() {
             [0, 1, 2].map(|k: usize| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
         let plane = if normal == [0; 3] || number % 3 == 0 { FLAT } else { plane };
         assert_covered(&points, plane);
+        // A corner on a straight side is no ear: a triangle without an area would leave a crack where rounding bends the side.
+        if number % 4 == 1 {
+            assert!(triangles(&points, plane).iter().all(|&[a, b, c]| area(a, b, c) > 0), "{points:?}");
+        }
         cut_truly += usize::from(matches!(cut(&placed(&points, plane)), Cut::Ears(_)));
         corners += points.len();
         // The same triangles, whichever corner the file begins with, and in whichever direction it goes.
