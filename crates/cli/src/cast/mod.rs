@@ -13,7 +13,7 @@ use raypencil::io::{
     FileError, FileFrame, Limits, LoadedRaySets, OutputFolder, PolygonFacts, RayScene, bytes, create_folder,
     hex_digits, load_ray_scene, polygon_warnings, read_ray_sets, read_triangles, sha256,
 };
-use raypencil::survey::Warning;
+use raypencil::survey::{Warning, WarningCode};
 use raypencil::{CastRay, NamedRaySet, Progress, Sides, Triangles};
 use serde_json::{Value, json};
 
@@ -62,7 +62,11 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
             let sides = if command.fronts_only { Sides::Fronts } else { Sides::Both };
             let answers = answer(mesh, &array.rays, sides, questions, &spinner);
             let compared = Compared::of(command, mesh, &array.rays, sides, &spinner);
-            let warnings = cast_warnings(mesh, &array.rays, sides, None, &answers);
+            let mut warnings = cast_warnings(mesh, &array.rays, sides, None, &answers);
+            if !command.ray.is_empty() {
+                // A miss is the answer to a question.
+                warnings.retain(|warning| warning.code != WarningCode::NoHits);
+            }
             spinner.stage("writing");
             if let Some(folder) = folder {
                 let set = None;

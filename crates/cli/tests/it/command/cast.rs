@@ -299,7 +299,7 @@ fn a_scan_of_a_room_in_millimetres_is_told_and_scaled() {
     let miss = cast(&["--scale", "1e9"]);
     assert_trouble(&miss, &["--scale 1000000000: expected 1e-6 to 1e6 metres"]);
     let one = raypencil(folder.path(), &["cast", "room.obj", "--ray", "0,0,9,0,0,1", "--scale", "0.001"]);
-    assert_eq!(one.status.code(), Some(0));
+    assert_eq!((one.status.code(), text(&one.stderr).as_str()), (Some(0), ""));
 }
 
 #[test]
