@@ -99,7 +99,7 @@ fn nothing_hit(mesh: &Triangles, rays: &[CastRay], sides: Sides) -> String {
     let tried: Vec<&CastRay> = rays.iter().step_by(step).collect();
     let nearest = |limited: bool, sides: Sides| {
         let mut hits = 0_u64;
-        let mut nearest: Option<(f64, f64)> = None;
+        let mut nearest: Option<(f64, &CastRay)> = None;
         for &ray in &tried {
             let asked = if limited {
                 *ray
@@ -112,19 +112,25 @@ fn nothing_hit(mesh: &Triangles, rays: &[CastRay], sides: Sides) -> String {
             };
             hits += 1;
             if nearest.is_none_or(|(range, _)| hit.range.double < range) {
-                nearest = Some((hit.range.double, reach(ray)));
+                nearest = Some((hit.range.double, ray));
             }
         }
-        nearest.map(|(range, reach)| (hits, range, reach))
+        nearest.map(|(range, ray)| (hits, range, ray))
     };
     let of = tried.len();
-    if let Some((hits, range, reach)) = nearest(false, sides) {
-        return format!(
-            "{none} within its limits. Without them {hits} of {of} that were tried would, the nearest at {} where the limit is {}: \
-             is the mesh in another unit, such as millimetres (--scale 0.001)?",
-            number(range),
-            number(reach)
+    if let Some((hits, range, ray)) = nearest(false, sides) {
+        let words = format!(
+            "{none} within its limits. Without them {hits} of {of} that were tried would, the nearest at"
         );
+        let (range, from, to) =
+            (number(range), number(ray.t_min * ray.direction.length()), number(reach(ray)));
+        // What lies before the least t is no matter of a unit that is too small.
+        return match hit_is_beyond(ray, &exact, sides) {
+            true => format!(
+                "{words} {range} where the limit is {to}: is the mesh in another unit, such as millimetres (--scale 0.001)?"
+            ),
+            false => format!("{words} {range}, before the {from} from which its hits count (t_min)."),
+        };
     }
     if sides == Sides::Fronts
         && let Some((hits, ..)) = nearest(true, Sides::Both)
@@ -148,6 +154,11 @@ fn nothing_hit(mesh: &Triangles, rays: &[CastRay], sides: Sides) -> String {
         place(first),
         place(last)
     )
+}
+
+/// Whether the first hit of a ray without limits is beyond its greatest t. It hits something, and nothing within its limits.
+fn hit_is_beyond(ray: &CastRay, exact: &ExactCast<'_>, sides: Sides) -> bool {
+    exact.first(&CastRay { t_min: 0.0, t_blind: 0.0, ..*ray }, sides).is_empty()
 }
 
 /// Number of edges that are not run through once in each direction, after vertices at the same place are taken as one.

@@ -73,7 +73,7 @@ fn limits_that_end_before_the_mesh_are_told_with_their_numbers() {
     assert_one(
         found(&cube(1.0, true), &behind, Sides::Both, false),
         WarningCode::NoHits,
-        &["the nearest at 4.00 where"],
+        &["the nearest at 4.00, before the 9.00 from which its hits count (t_min)."],
     );
 }
 
