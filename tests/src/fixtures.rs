@@ -58,7 +58,7 @@ pub fn subject() -> Subject {
         arguments: "pyramids --fan 60".into(),
         sha256: "0123456789abcdef".repeat(4),
         vehicle: Some(Pose::IDENTITY),
-        file_warnings: Vec::new(),
+        file_facts: Default::default(),
     }
 }
 

@@ -51,7 +51,7 @@ pub fn terrain(
                 arguments: campaign.arguments(number, part),
                 name: name.clone(),
                 vehicle: None,
-                file_warnings: Vec::new(),
+                file_facts: Default::default(),
             };
             let misses = found.map(|folder| folder.join("misses").join(name));
             records.push(hunt(command, part, &subject, misses.as_deref())?);

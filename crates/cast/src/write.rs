@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use raypencil_files::{
     FileError, FolderError, RayArray, begin_output_folder, write_atomically, write_npy_numbers,
 };
-use raypencil_mesh_io::{FileFrame, PolygonFacts, UpAxis};
+use raypencil_mesh_io::{FileFacts, FileFrame, FileUnits, UpAxis};
 use raypencil_referee::CastMargin;
 use raypencil_report::VERSION;
 use raypencil_scene::{CastRay, NamedRaySet, Side, Sides, Triangles};
@@ -29,8 +29,8 @@ pub struct CastSource {
     pub rays_sha256: Option<String>,
     /// The axes and the unit that were given for the mesh's file.
     pub frame: FileFrame,
-    /// What was found out about the polygons of the mesh's file.
-    pub polygons: PolygonFacts,
+    /// What was found out about the mesh's file.
+    pub facts: FileFacts,
 }
 
 /// What stands for no face.
@@ -175,7 +175,8 @@ fn write_arrays(
             "zeroAreaFaces": mesh.zero_area_faces(),
             "up": source.frame.up.map(UpAxis::word),
             "scale": source.frame.scale,
-            "polygons": source.polygons,
+            "units": source.facts.units.as_ref().map(FileUnits::to_json),
+            "polygons": source.facts.polygons,
         },
         "rays": { "file": source.rays, "sha256": source.rays_sha256, "shape": shape, "count": answers.first.len() },
         "sides": if sides == Sides::Both { "both" } else { "fronts" },

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use raypencil::cast::{CastSource, RayArray, RayPackCounts, read_rays, write_ray_pack};
 use raypencil::harness::{PackedRaySet, write_pack_with_ray_sets};
 use raypencil::io::{
-    FileError, LoadedRaySets, OutputFolder, file_sha256_hex, hex_digits, polygon_warnings, read_ray_sets,
-    read_triangles,
+    FileError, FileFacts, FileFrame, FileUnits, LoadedRaySets, OutputFolder, file_sha256_hex, file_warnings,
+    hex_digits, read_ray_sets, read_triangles,
 };
 use raypencil::pack::{
     MIN_RAYS_PER_CLAUSE, Manifest, PackLabel, benched, blind_subject, input_faces, write_input,
@@ -45,7 +45,7 @@ pub(crate) fn pack(command: &Pack, json: bool) -> Result<Outcome, Trouble> {
             let subject = subject(&command.scene, "", &spinner)?;
             memory::ask(Rates::PACK, &subject.scene)?;
             spinner.stage("looking at the scene");
-            let mut warned = subject.file_warnings.clone();
+            let mut warned = subject.file_warnings();
             warned.extend(warnings(&subject.scene, subject.vehicle.as_ref(), None));
             let is_plain = command.no_bench;
             (if is_plain { subject } else { benched(subject)? }, warned)
@@ -105,15 +105,16 @@ fn pack_rays(command: &Pack, rays: &Path, json: bool) -> Result<Outcome, Trouble
     spinner.stage(&format!("{file}: loading"));
     let mesh = read_triangles(file.as_ref())?;
     let (packed, digest) = packed(rays)?;
+    let units = FileUnits::Mesh { is_gltf: mesh.is_gltf, frame: FileFrame::default() };
     let source = CastSource {
         mesh: file.clone(),
         mesh_sha256: mesh.digests.iter().map(hex_digits).collect(),
         rays: rays.display().to_string(),
         rays_sha256: Some(digest),
-        polygons: mesh.polygon_facts,
+        facts: FileFacts { units: Some(units), polygons: mesh.polygon_facts },
         ..CastSource::default()
     };
-    warn(&polygon_warnings(&source.polygons));
+    warn(&file_warnings(&source.facts));
     // One after the other.
     let most = packed.iter().map(|one| one.array.rays.len()).max().unwrap_or(0);
     memory::ask_cast(most, mesh.triangles.faces().len())?;

@@ -37,7 +37,7 @@ pub(crate) fn render(command: &Render, json: bool, registry: &Registry) -> Resul
     folder.finish()?;
     spinner.stage("looking at the scene");
     let hits: Vec<SensorHits> = output.maps().filter_map(SensorHits::of_map).collect();
-    let mut warned = subject.file_warnings.clone();
+    let mut warned = subject.file_warnings();
     warned.extend(warnings(&subject.scene, subject.vehicle.as_ref(), Some(&hits)));
     drop(spinner);
     let files: Vec<String> =

@@ -27,7 +27,7 @@
 //!     arguments: "small.toml".into(),
 //!     sha256: "0".repeat(64),
 //!     vehicle: None,
-//!     file_warnings: Vec::new(),
+//!     file_facts: Default::default(),
 //! };
 //!
 //! let contenders = ["scanline", "tracer"].map(|name| contender(name).expect("a renderer's name"));

@@ -77,7 +77,7 @@ pub(crate) fn write_misses(
         let (scene, place) = reduce_to_ray(&subject.scene, wrong.place, MAX_FACES, &is_interesting, progress);
         let sha256 = scene_sha256(&scene);
         let arguments = quoted("scene.toml");
-        let small = Subject { arguments, name, sha256, scene, vehicle: None, file_warnings: Vec::new() };
+        let small = Subject { arguments, name, sha256, scene, vehicle: None, file_facts: Default::default() };
         write_pack(&small, None, &PackLabel::NONE, &folder, progress)?;
         let text = readme(subject, report, wrong, &small, place);
         let path = folder.join("README.md");

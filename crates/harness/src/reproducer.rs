@@ -55,7 +55,7 @@ fn description_of(minimised: &Minimised, Reproducer { name, what, with }: Reprod
         arguments,
         sha256,
         vehicle: None,
-        file_warnings: Vec::new(),
+        file_facts: Default::default(),
     };
     commands.extend(place.map(|place| probe_command(&subject, place)));
     let commands = commands.join("\n");

@@ -35,7 +35,7 @@ use crate::validation::{Pair, Validation, most_hits};
 ///     arguments: "small.toml".into(),
 ///     sha256: "0".repeat(64),
 ///     vehicle: None,
-///     file_warnings: Vec::new(),
+///     file_facts: Default::default(),
 /// };
 /// let contenders = ["scanline", "tracer", "referee"].map(|name| contender(name).expect("a renderer's name"));
 /// let validation = validate(subject, &contenders, JudgeShare::All, &Silent);
@@ -75,7 +75,7 @@ pub fn validate(
 ///     let air = Atmosphere { attenuation: 0.0 };
 ///     let scene = Scene::new(Arc::clone(&mesh), camera, beams, air, FluxModel::Radiometric)?;
 ///     # let (name, arguments, sha256) = ("small".into(), "small.toml".into(), "0".repeat(64));
-///     # let subject = Subject { scene, name, arguments, sha256, vehicle: None, file_warnings: vec![] };
+///     # let subject = Subject { scene, name, arguments, sha256, vehicle: None, file_facts: Default::default() };
 ///     let validation = validator.validate(subject, &contenders, JudgeShare::Sample, &Silent);
 ///     assert_eq!((validation.counts().compared, validation.counts().defects), (320, 0));
 /// }
@@ -127,7 +127,7 @@ impl Validator {
         progress.stage("looking at the scene");
         let start = Instant::now();
         let hits = most_hits(&rendered);
-        let mut warnings = subject.file_warnings.clone();
+        let mut warnings = subject.file_warnings();
         warnings.extend(self.surveyor.warnings(&subject.scene, subject.vehicle.as_ref(), Some(&hits)));
         stages.push(Stage { name: "looking at the scene".into(), time: start.elapsed() });
 

@@ -21,14 +21,15 @@
 //!       unit -> epsg, gdal_metadata           units of length, and what the codes of EPSG say
 //!       coordinate_system -> georeference     the units of map and heights, and where pixels are on the map
 //!       nodata, outliers -> heights           samples that are no heights, and those that can hardly be any
-//!       lattice, model -> read                the posts inside a window, and the ground through them
+//!       lattice, model, facts                 the posts inside a window, the ground through them, and what the file says
+//!       read                                  the steps one after the other
 //!       write                                 a grid of heights to GeoTIFF
 //! triangles  text, polygon, polygon_facts     lines and decimal numbers of a text; a polygon's triangles; what is told of it
 //!       parts                                 vertices and faces
 //!       stl, obj, npy_pair                    a format each
 //!       ply: header -> numbers                elements and types, and the numbers of either kind
 //!       read                                  which format a file has, and triangles as `f64`
-//! file_frame -> terrain                       the axes and the unit of a mesh file, and terrain from any of them
+//! file_frame, file_facts -> terrain           axes and units of a file, what it says of them, and terrain from any mesh
 //! ```
 //!
 //! The formats are described in `docs/formats/files.md`, elevation models in `docs/guide/dem.md` and `docs/formats/terrain.md`. Sources: glTF 2.0
@@ -54,21 +55,23 @@
 //! ```
 
 pub mod dem;
+mod file_facts;
 mod file_frame;
 pub mod gltf;
 mod terrain;
 pub mod triangles;
 
 pub use dem::{
-    AxisSystem, Dem, DemOptions, HeightUnit, LengthUnit, NoData, Registration, Spikes, UnitSource,
-    dem_from_bytes, read_dem, read_dem_with, write_geotiff,
+    AxisSystem, Dem, DemFacts, DemOptions, HeightUnit, LengthUnit, NoData, Registration, SpikeFacts, Spikes,
+    UnitSource, dem_from_bytes, read_dem, read_dem_with, write_geotiff,
 };
+pub use file_facts::{FileFacts, FileUnits};
 pub use file_frame::{FileFrame, SCALE_RANGE, UpAxis};
 pub use gltf::{
     DEFAULT_REFLECTIVITY, MAX_BUFFER_FILES_BYTES, Vertices, glb_bytes, load_mesh, mesh_from_bytes,
     mesh_of_offsets, write_glb, write_terrain_glb,
 };
-pub use terrain::{TerrainFile, load_terrain, read_terrain, terrain_from_bytes};
+pub use terrain::{TerrainFile, load_terrain, read_dem_terrain, read_terrain, terrain_from_bytes};
 pub use triangles::{
     BentPolygons, CrossingPolygons, PolygonFacts, PolygonPlace, TriangleFile, load_triangles, read_triangles,
     triangles_from_bytes,

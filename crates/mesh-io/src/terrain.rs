@@ -1,11 +1,13 @@
-//! A mesh file of any format to terrain: in the global frame, with a scene origin.
+//! A file of any format to terrain: in the global frame, with a scene origin.
 
 use std::path::Path;
 
 use glam::DVec3;
-use raypencil_files::{Fault, FileError, Sha256Digest};
+use raypencil_files::{Fault, FileError, Sha256Digest, file_sha256};
 use raypencil_scene::{Material, Mesh};
 
+use crate::dem::{DemOptions, read_dem_with};
+use crate::file_facts::{FileFacts, FileUnits};
 use crate::file_frame::{FileFrame, UpAxis};
 use crate::gltf::{self, MAX_FACES_OR_VERTICES, WITHOUT_MATERIAL};
 use crate::triangles::{Format, PolygonFacts, TriangleFile, format, parse, read_bytes};
@@ -44,16 +46,32 @@ pub struct TerrainFile {
     pub mesh: Mesh,
     /// Digests of the file and of the buffers beside it.
     pub digests: Vec<Sha256Digest>,
-    /// What was found out about the polygons of the file that are no triangles.
-    pub polygon_facts: PolygonFacts,
+    /// What was found out about the file beside its faces.
+    pub facts: FileFacts,
 }
 
-/// Loads a terrain as [`load_terrain`] does, with the digests of its files and what was found out about its polygons.
+/// Loads a terrain as [`load_terrain`] does, with the digests of its files and what they say of themselves.
 ///
 /// # Errors
 /// As [`load_terrain`].
 pub fn read_terrain(path: &Path, reflectivity: f64, frame: &FileFrame) -> Result<TerrainFile, FileError> {
     terrain_of_bytes(&read_bytes(path)?, path, reflectivity, frame)
+}
+
+/// Terrain of an elevation model, or of its part inside a window, with the digest of the whole file.
+///
+/// # Errors
+/// As [`read_dem`](crate::read_dem) and [`Dem::mesh`](crate::Dem::mesh).
+pub fn read_dem_terrain(
+    path: &Path,
+    options: &DemOptions,
+    max_error: Option<f64>,
+    reflectivity: f64,
+) -> Result<TerrainFile, FileError> {
+    let dem = read_dem_with(path, options)?;
+    let mesh = dem.mesh(max_error, reflectivity)?;
+    let (_, sha) = file_sha256(path).map_err(|error| FileError::io(path, "read", error))?;
+    Ok(TerrainFile { mesh, digests: vec![sha], facts: dem.facts().into() })
 }
 
 /// Terrain from the bytes of a file, as [`load_terrain`] reads it; `file` is its name in messages, and its ending tells the
@@ -77,9 +95,11 @@ fn terrain_of_bytes(
     frame: &FileFrame,
 ) -> Result<TerrainFile, FileError> {
     let in_file = |fault: Fault| FileError::Mesh(fault.in_file(file));
+    let units = |is_gltf| Some(FileUnits::Mesh { is_gltf, frame: *frame });
     if format(bytes, file).map_err(in_file)? == Format::Gltf {
         let (mesh, digests) = gltf::terrain_from_bytes(bytes, file, reflectivity, frame)?;
-        return Ok(TerrainFile { mesh, digests, polygon_facts: PolygonFacts::default() });
+        let facts = FileFacts { units: units(true), polygons: PolygonFacts::default() };
+        return Ok(TerrainFile { mesh, digests, facts });
     }
     let TriangleFile { triangles, digests, polygon_facts, .. } = parse(bytes, file)?;
     let (vertices, faces) = (triangles.vertices(), triangles.faces());
@@ -96,5 +116,5 @@ fn terrain_of_bytes(
     let material = Material { name: WITHOUT_MATERIAL.to_string(), reflectivity };
     let mesh = Mesh::from_global(&vertices, faces.to_vec(), vec![0; faces.len()], vec![material])
         .map_err(|source| FileError::Scene { origin: file.display().to_string(), source })?;
-    Ok(TerrainFile { mesh, digests, polygon_facts })
+    Ok(TerrainFile { mesh, digests, facts: FileFacts { units: units(false), polygons: polygon_facts } })
 }

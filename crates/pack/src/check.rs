@@ -277,7 +277,7 @@ pub fn check_pack_by(
         sha256,
         scene,
         vehicle: None,
-        file_warnings: Vec::new(),
+        file_facts: Default::default(),
     };
     let is_blind = manifest.kind == PackKind::Blind;
     let ray_sets = Vec::new();

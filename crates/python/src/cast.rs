@@ -3,8 +3,9 @@
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use raypencil::cast::{Answers, FirstHit, GroupAtT, Questions, cast_with};
+use raypencil::cast::{Answers, FirstHit, GroupAtT, Questions, cast_warnings, cast_with};
 use raypencil::referee::{CastMargin, ExactCast};
+use raypencil::survey::WarningCode;
 use raypencil::{CastRay, Progress, Side, Sides};
 
 use crate::array::Arrays;
@@ -19,7 +20,7 @@ const RAYS_AT_A_TIME: usize = 1 << 16;
 /// What stands for no face.
 const NO_FACE: u32 = u32::MAX;
 
-/// Answers rays of (n, 9) on a mesh: the arrays of `docs/guide/cast.md`, flat.
+/// Answers rays of (n, 9) on a mesh: the arrays of `docs/guide/cast.md`, flat, and what looks wrong.
 #[pyfunction]
 #[pyo3(signature = (mesh, rays, by_tracer, fronts_only, any, all, margins, on_stage=None))]
 pub(crate) fn cast<'py>(
@@ -32,19 +33,25 @@ pub(crate) fn cast<'py>(
     all: bool,
     margins: bool,
     on_stage: Option<&Bound<'py, PyAny>>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<(Bound<'py, PyDict>, Vec<String>)> {
     let sides = sides(fronts_only);
     let set = rays_of(&rays, sides).map_err(|failure| failure.into_exception(py))?;
     drop(rays);
     let (mesh, questions) = (mesh.clone(), Questions { any, all, margins });
-    let arrays = watched(py, on_stage, move |watch| {
+    let (arrays, warnings) = watched(py, on_stage, move |watch| {
         let answers = match by_tracer {
             true => traced(&mesh, set.rays(), sides, watch),
             false => exact(&mesh, set.rays(), sides, questions, watch),
         };
-        Ok::<_, Failure>(arrays_of(&answers, set.rays()))
+        let mut warnings = cast_warnings(&mesh.triangles, set.rays(), sides, None, &answers);
+        if set.rays().len() == 1 {
+            // A miss is the answer to a question.
+            warnings.retain(|warning| warning.code != WarningCode::NoHits);
+        }
+        let warnings = warnings.iter().map(ToString::to_string).collect::<Vec<_>>();
+        Ok::<_, Failure>((arrays_of(&answers, set.rays()), warnings))
     })?;
-    arrays.into_dict(py)
+    Ok((arrays.into_dict(py)?, warnings))
 }
 
 /// Says how far it is, and hears Ctrl-C.

@@ -32,7 +32,7 @@ impl SceneCore {
             name: name.clone(),
             arguments: self.words.clone() + renderers,
             sha256: source_sha256.clone(),
-            file_warnings: self.loaded.file_warnings(),
+            file_facts: self.loaded.file_facts.clone(),
         }
     }
 

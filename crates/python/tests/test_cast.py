@@ -212,3 +212,19 @@ def test_answers_of_two_dimensions_have_a_picture(cube: Mesh) -> None:
 def test_a_scenes_terrain_is_a_mesh(small: raypencil.Scene) -> None:
     # The camera is 1.5 m above level ground at x = 0.3.
     assert cast(small, [0.3, 0, 1.5], [0, 0, -1]).range == 1.5
+
+
+def test_what_looks_wrong_is_warned_of(cube: Mesh) -> None:
+    # Rays in metres at a cube in millimetres: they end long before it.
+    away = [[0.5, 0.5, 5000.0], [0.25, 0.5, 5000.0]]
+    with pytest.warns(raypencil.RaypencilWarning, match=r"none of the 2 rays hits .* --scale 0\.001"):
+        answers = cast(cube, away, [0, 0, -1], t_max=10)
+    assert not answers.hit.any() and len(answers.warnings) == 1
+    assert pickle.loads(pickle.dumps(answers)).warnings == answers.warnings
+    # An open mesh is none for crossings, and is one for first hits.
+    square = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    with pytest.warns(raypencil.RaypencilWarning, match="3 open edges"):
+        cast(square, [0.25, 0.25, 1], [0, 0, -1], query="all")
+    assert cast(square, [0.25, 0.25, 1], [0, 0, -1]).warnings == ()
+    # A miss of one ray is its answer.
+    assert cast(square, [2, 2, 1], [0, 0, -1]).warnings == ()

@@ -3,8 +3,7 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use raypencil_files::Sha256Digest;
-use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, PolygonFacts, TerrainFile, dem, read_terrain};
+use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, TerrainFile, dem, read_dem_terrain, read_terrain};
 use raypencil_scene::{Mesh, SceneError};
 use raypencil_terrain::{BUILTIN_NAMES, MarsGround, RandomGround, builtin};
 
@@ -16,44 +15,28 @@ use crate::scene_source::MESH_ENDINGS;
 /// Side of a plain random ground without `extent_m`, metres: the default sensors see 20 m to every side.
 const PLAIN_EXTENT_M: f64 = 40.0;
 
-/// A terrain from files.
-pub(crate) struct GroundFromFiles {
-    pub(crate) mesh: Mesh,
-    /// Digests of the files.
-    pub(crate) digests: Vec<Sha256Digest>,
-    /// What was found out about the polygons of the file.
-    pub(crate) polygon_facts: PolygonFacts,
-}
-
 /// Mesh of a terrain that needs files; `None`: the terrain needs none.
-pub(crate) fn read_ground(
-    source: &Source,
-    plan: &ScenePlan,
-) -> Result<Option<GroundFromFiles>, SceneIoError> {
+pub(crate) fn read_ground(source: &Source, plan: &ScenePlan) -> Result<Option<TerrainFile>, SceneIoError> {
     let reflectivity = plan.reflectivity.unwrap_or(DEFAULT_REFLECTIVITY);
     match &plan.terrain {
         Terrain::File(MeshPart { file, frame }) => {
             let terrain = terrain_file(source, "file", &MESH_ENDINGS, file, &plan.terrain_span)?;
-            let TerrainFile { mesh, digests, polygon_facts } = read_terrain(&terrain, reflectivity, frame)?;
-            Ok(Some(GroundFromFiles { mesh, digests, polygon_facts }))
+            Ok(Some(read_terrain(&terrain, reflectivity, frame)?))
         }
         Terrain::Dem(DemPart { file, options, max_error }) => {
             let terrain = terrain_file(source, "dem", &["tif", "tiff"], file, &plan.terrain_span)?;
-            let (mesh, sha) = dem::read_mesh(&terrain, options, *max_error, reflectivity)?;
-            let polygon_facts = PolygonFacts::default();
-            Ok(Some(GroundFromFiles { mesh, digests: vec![sha], polygon_facts }))
+            Ok(Some(read_dem_terrain(&terrain, options, *max_error, reflectivity)?))
         }
         Terrain::Mars { ground, coarse: Some((file, span)) } => {
             let coarse = terrain_file(source, "generate.coarse", &["tif", "tiff"], file, span)?;
-            let (posts, sha) = dem::read_posts(&coarse)?;
+            let (posts, facts, sha) = dem::read_posts(&coarse)?;
             let ground = MarsGround { coarse: Some(posts), ..(**ground).clone() };
             let mesh = mars_mesh(&ground, plan.reflectivity).map_err(|error| {
                 let SceneError { field, value, expected } = error;
                 let message = format!("`terrain.generate.{field}` is {value}; expected {expected}");
                 source.error(span.clone(), message)
             })?;
-            let polygon_facts = PolygonFacts::default();
-            Ok(Some(GroundFromFiles { mesh, digests: vec![sha], polygon_facts }))
+            Ok(Some(TerrainFile { mesh, digests: vec![sha], facts: facts.into() }))
         }
         Terrain::Builtin(_) | Terrain::Generate { .. } | Terrain::Mars { coarse: None, .. } => Ok(None),
     }

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use raypencil_files::Sha256Digest;
-use raypencil_mesh_io::PolygonFacts;
+use raypencil_mesh_io::FileFacts;
 use raypencil_scene::Mesh;
 
 /// A ground, and where it comes from.
@@ -12,8 +12,8 @@ pub(crate) struct Ground {
     pub(crate) mesh: Arc<Mesh>,
     /// Digests of its files; `None`: it has no file.
     pub(crate) digests: Option<Vec<Sha256Digest>>,
-    /// What was found out about the polygons of its file.
-    pub(crate) polygon_facts: PolygonFacts,
+    /// What was found out about its file.
+    pub(crate) facts: FileFacts,
 }
 
 /// The grounds of the last few scenes. A scene with the same ground shares it, and with it all that renderers and the

@@ -73,7 +73,7 @@ pub const SCENE_TEMPLATE: &str = include_str!("template.toml");
 pub use camera_info::{CameraInfo, camera_info_from_text};
 pub use digest::scene_sha256;
 pub use drive::setup::{DriveSetup, WaypointFrame, default_threshold};
-pub use file_warnings::polygon_warnings;
+pub use file_warnings::file_warnings;
 pub use grounds::Grounds;
 pub use load::{LoadedScene, MAX_TOML_BYTES, check_settings, load, load_sharing, load_text, load_text_with};
 pub use overrides::Overrides;

@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use raypencil_files::{Sha256Digest, bytes, combined_sha256_hex, sha256};
 use raypencil_mesh_io::{
-    DEFAULT_REFLECTIVITY, DemOptions, FileFrame, PolygonFacts, TerrainFile, Vertices, dem, gltf, read_terrain,
+    DEFAULT_REFLECTIVITY, DemOptions, FileFacts, FileFrame, TerrainFile, Vertices, gltf, read_dem_terrain,
+    read_terrain,
 };
 use raypencil_rover::Rig;
 use raypencil_scene::{Pose, Scene, SceneError};
@@ -14,8 +15,8 @@ use raypencil_survey::Warning;
 
 use crate::digest;
 use crate::drive::setup::{DriveSetup, rig_of};
-use crate::file_warnings::polygon_warnings;
-use crate::ground::{GroundFromFiles, make_ground, read_ground, terrain_file};
+use crate::file_warnings::file_warnings;
+use crate::ground::{make_ground, read_ground, terrain_file};
 use crate::grounds::{Ground, Grounds};
 use crate::overrides::Overrides;
 use crate::parse::kind::Kind;
@@ -53,8 +54,8 @@ pub struct LoadedScene {
     pub source: SceneSource,
     /// Drive of the scene file, placed in the scene; `None`: the file has no `[drive]`.
     pub drive: Option<DriveSetup>,
-    /// What was found out about the polygons of the terrain's file.
-    pub polygon_facts: PolygonFacts,
+    /// What was found out about the terrain's file.
+    pub file_facts: FileFacts,
 }
 
 impl LoadedScene {
@@ -65,15 +66,15 @@ impl LoadedScene {
 
     /// What looks wrong in the files of the terrain.
     pub fn file_warnings(&self) -> Vec<Warning> {
-        polygon_warnings(&self.polygon_facts)
+        file_warnings(&self.file_facts)
     }
 
     /// The scene under test. `arguments` are words that give it again on a command line.
     pub fn into_subject(self, arguments: String) -> Subject {
         Subject {
-            file_warnings: self.file_warnings(),
             vehicle: self.standing_vehicle(),
             scene: self.scene,
+            file_facts: self.file_facts,
             name: self.name,
             arguments,
             sha256: self.source_sha256,
@@ -118,24 +119,20 @@ pub fn load(source: &str, overrides: &Overrides) -> Result<LoadedScene, SceneIoE
         SceneSource::Builtin(name) => {
             let plan = default_rig(Terrain::Builtin(name.clone()));
             let mesh = make_ground(&plan).map_err(|error| SceneIoError::scene(source.origin(), error))?;
-            let polygon_facts = PolygonFacts::default();
-            let ground = Ground { mesh: Arc::new(mesh), digests: None, polygon_facts };
+            let ground = Ground { mesh: Arc::new(mesh), digests: None, facts: FileFacts::default() };
             finish(&source, plan, Vec::new(), ground, overrides)
         }
         SceneSource::Mesh(path) => {
             let frame = FileFrame::default();
-            let TerrainFile { mesh, digests, polygon_facts } =
-                read_terrain(path, DEFAULT_REFLECTIVITY, &frame)?;
+            let read = read_terrain(path, DEFAULT_REFLECTIVITY, &frame)?;
             let terrain = Terrain::File(MeshPart { file: path.clone(), frame });
-            finish_alone(&source, terrain, GroundFromFiles { mesh, digests, polygon_facts }, overrides)
+            finish_alone(&source, terrain, read, overrides)
         }
         SceneSource::Dem(path) => {
             let options = DemOptions::default();
-            let (mesh, sha) = dem::read_mesh(path, &options, None, DEFAULT_REFLECTIVITY)?;
+            let read = read_dem_terrain(path, &options, None, DEFAULT_REFLECTIVITY)?;
             let terrain = Terrain::Dem(DemPart { file: path.clone(), options, max_error: None });
-            let polygon_facts = PolygonFacts::default();
-            let ground = GroundFromFiles { mesh, digests: vec![sha], polygon_facts };
-            finish_alone(&source, terrain, ground, overrides)
+            finish_alone(&source, terrain, read, overrides)
         }
         SceneSource::Toml(path) => load_toml(&source, path, &read_toml(path)?, overrides, None),
     }
@@ -283,15 +280,11 @@ fn load_rig(
     parts.append(&mut plan.ray_digests);
     let make = || -> Result<Ground, SceneIoError> {
         match read_ground(file, &plan)? {
-            Some(GroundFromFiles { mesh, digests, polygon_facts }) => {
-                Ok(Ground { mesh: Arc::new(mesh), digests: Some(digests), polygon_facts })
+            Some(TerrainFile { mesh, digests, facts }) => {
+                Ok(Ground { mesh: Arc::new(mesh), digests: Some(digests), facts })
             }
             None => make_ground(&plan)
-                .map(|mesh| Ground {
-                    mesh: Arc::new(mesh),
-                    digests: None,
-                    polygon_facts: PolygonFacts::default(),
-                })
+                .map(|mesh| Ground { mesh: Arc::new(mesh), digests: None, facts: FileFacts::default() })
                 .map_err(|error| SceneIoError::scene(source.origin(), error)),
         }
     };
@@ -355,14 +348,14 @@ fn load_resolved(
 fn finish_alone(
     source: &SceneSource,
     terrain: Terrain,
-    GroundFromFiles { mesh, digests, polygon_facts }: GroundFromFiles,
+    TerrainFile { mesh, digests, facts }: TerrainFile,
     overrides: &Overrides,
 ) -> Result<LoadedScene, SceneIoError> {
     let mut plan = default_rig(terrain);
     if overrides.at.is_none() {
         plan.vehicle.position = central_place(&mesh).unwrap_or_default();
     }
-    let ground = Ground { mesh: Arc::new(mesh), digests: Some(digests.clone()), polygon_facts };
+    let ground = Ground { mesh: Arc::new(mesh), digests: Some(digests.clone()), facts };
     finish(source, plan, digests, ground, overrides)
 }
 
@@ -371,7 +364,7 @@ fn finish(
     source: &SceneSource,
     mut plan: ScenePlan,
     mut parts: Vec<Sha256Digest>,
-    Ground { mesh, digests, polygon_facts }: Ground,
+    Ground { mesh, digests, facts: file_facts }: Ground,
     overrides: &Overrides,
 ) -> Result<LoadedScene, SceneIoError> {
     let unfit = |error: SceneError| SceneIoError::scene(source.origin(), error);
@@ -391,7 +384,7 @@ fn finish(
         drive.place(&scene, &vehicle);
     }
     let drive = plan.drive;
-    Ok(LoadedScene { drive, polygon_facts, ..loaded(source, scene, vehicle, parts, overrides) })
+    Ok(LoadedScene { drive, file_facts, ..loaded(source, scene, vehicle, parts, overrides) })
 }
 
 /// Adds names and digests to a scene.
@@ -414,6 +407,6 @@ fn loaded(
         has_vehicle: true,
         source: source.clone(),
         drive: None,
-        polygon_facts: PolygonFacts::default(),
+        file_facts: FileFacts::default(),
     }
 }

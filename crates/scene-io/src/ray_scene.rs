@@ -7,10 +7,10 @@ use std::path::Path;
 
 use glam::DVec3;
 use raypencil_files::{Sha256Digest, combined_sha256_hex, sha256};
-use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, PolygonFacts, read_triangles};
+use raypencil_mesh_io::{DEFAULT_REFLECTIVITY, FileFacts, FileUnits, TerrainFile, read_triangles};
 use raypencil_scene::{Material, Mesh, NamedRaySet, Pose, SceneError, Triangles};
 
-use crate::ground::{GroundFromFiles, make_ground, read_ground, terrain_file};
+use crate::ground::{make_ground, read_ground, terrain_file};
 use crate::load::{no_ground, read_toml};
 use crate::parse::kind::Kind;
 use crate::parse::scene::parse;
@@ -32,8 +32,8 @@ pub struct RayScene {
     pub sets: Vec<NamedRaySet>,
     /// SHA-256 of the terrain's files, or of its numbers if it has none.
     pub terrain_digests: Vec<Sha256Digest>,
-    /// What was found out about the polygons of the terrain's file.
-    pub polygon_facts: PolygonFacts,
+    /// What was found out about the terrain's file.
+    pub file_facts: FileFacts,
     /// SHA-256 in hexadecimal of the scene file, followed by the digests of the files that its sets name.
     pub sha256: String,
 }
@@ -75,7 +75,7 @@ pub fn load_ray_scene(path: &Path, settings: &[Setting]) -> Result<RayScene, Sce
         return Err(file.error(0..0, "there is no table `[[rays]]`; expected at least one"));
     }
     let unfit = |error: SceneError| SceneIoError::scene(path.display().to_string(), error);
-    let (triangles, vehicle, terrain_digests, polygon_facts) = match &plan.terrain {
+    let (triangles, vehicle, terrain_digests, file_facts) = match &plan.terrain {
         Terrain::File(MeshPart { file: terrain, frame }) => {
             let terrain = terrain_file(&file, "file", &MESH_ENDINGS, terrain, &plan.terrain_span)?;
             let read = read_triangles(&terrain)?;
@@ -86,21 +86,22 @@ pub fn load_ray_scene(path: &Path, settings: &[Setting]) -> Result<RayScene, Sce
                 None => ground_of(&triangles),
             };
             let vehicle = stood(&file, &plan, &ground.map_err(unfit)?)?;
-            (triangles, vehicle, read.digests, read.polygon_facts)
+            let is_gltf = read.is_gltf;
+            let units = Some(FileUnits::Mesh { is_gltf, frame: *frame });
+            (triangles, vehicle, read.digests, FileFacts { units, polygons: read.polygon_facts })
         }
         _ => {
-            let GroundFromFiles { mesh, digests, polygon_facts } = match read_ground(&file, &plan)? {
+            let TerrainFile { mesh, digests, facts } = match read_ground(&file, &plan)? {
                 Some(read) => read,
                 None => {
                     let mesh = make_ground(&plan).map_err(unfit)?;
                     let digest = crate::digest::mesh(&mesh);
-                    let polygon_facts = PolygonFacts::default();
-                    GroundFromFiles { mesh, digests: vec![digest], polygon_facts }
+                    TerrainFile { mesh, digests: vec![digest], facts: FileFacts::default() }
                 }
             };
             let global = stood(&file, &plan, &mesh)?;
             let vehicle = Pose { position: global.position - mesh.origin(), ..global };
-            (Triangles::from(&mesh), vehicle, digests, polygon_facts)
+            (Triangles::from(&mesh), vehicle, digests, facts)
         }
     };
     let sets = plan.ray_sets.iter().map(|set| set.placed(&vehicle));
@@ -110,7 +111,7 @@ pub fn load_ray_scene(path: &Path, settings: &[Setting]) -> Result<RayScene, Sce
         triangles,
         sets,
         terrain_digests,
-        polygon_facts,
+        file_facts,
         sha256: combined_sha256_hex(&[own, plan.ray_digests].concat()),
     })
 }

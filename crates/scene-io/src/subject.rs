@@ -1,7 +1,10 @@
 //! A scene under test, and the commands that people type to see it.
 
+use raypencil_mesh_io::FileFacts;
 use raypencil_scene::{Place, Pose, Scene, SensorId};
 use raypencil_survey::Warning;
+
+use crate::file_warnings::file_warnings;
 
 /// Scene under test, with the names that people give it.
 #[derive(Debug, Clone)]
@@ -17,8 +20,15 @@ pub struct Subject {
     pub sha256: String,
     /// Pose of the vehicle in the global frame; `None`: the scene has sensors alone.
     pub vehicle: Option<Pose>,
-    /// What looks wrong in the files of its terrain.
-    pub file_warnings: Vec<Warning>,
+    /// What was found out about the files of its terrain.
+    pub file_facts: FileFacts,
+}
+
+impl Subject {
+    /// What looks wrong in the files of the terrain.
+    pub fn file_warnings(&self) -> Vec<Warning> {
+        file_warnings(&self.file_facts)
+    }
 }
 
 /// Command that shows everything about one ray.

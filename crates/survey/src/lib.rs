@@ -13,7 +13,7 @@
 //! warnings/terrain     rules: terrain on its side, terrain too large
 //! warnings/vehicle     rules: vehicle above or below the ground
 //! warnings/image       rules: principal point outside the image or far from its middle
-//! warnings/polygons    rules: polygons of the terrain's file that cross themselves or are not planar
+//! warnings/file        rules: polygons of the terrain's file that cross themselves or are not planar; heights that stand out
 //! warnings/mod         all rules on one scene
 //! whereabouts          poses, fields of view and bounds in the global frame
 //! plan                 the same as a drawing from above
@@ -52,9 +52,9 @@ mod whereabouts;
 pub use facing::{Facing, facings};
 pub use plan::plan;
 pub use warning::{Warning, WarningCode};
+pub use warnings::file::{polygons_cross, polygons_not_planar, posts_stand_out};
 pub use warnings::hits::{SensorHits, few_hits, mostly_backs, no_hits};
 pub use warnings::image::{principal_point_off_centre, principal_point_outside};
-pub use warnings::polygons::{polygons_cross, polygons_not_planar};
 pub use warnings::terrain::{TerrainShape, lies_on_its_side, terrain_on_its_side, terrain_too_large};
 pub use warnings::vehicle::{vehicle_above_ground, vehicle_below_ground};
 pub use warnings::{Surveyor, warnings};

@@ -45,13 +45,15 @@ pub enum WarningCode {
     PolygonsCross,
     /// Polygons of the terrain's file are not planar.
     PolygonsNotPlanar,
+    /// Heights of an elevation model stand out by more than the rest of it is high.
+    PostsStandOut,
     /// Crossings are asked for of a mesh that is not closed.
     OpenMesh,
 }
 
 impl WarningCode {
     /// All codes.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::NoHits,
         Self::FewHits,
         Self::BacksFirst,
@@ -67,6 +69,7 @@ impl WarningCode {
         Self::NothingMeasured,
         Self::PolygonsCross,
         Self::PolygonsNotPlanar,
+        Self::PostsStandOut,
         Self::OpenMesh,
     ];
 
@@ -88,6 +91,7 @@ impl WarningCode {
             Self::NothingMeasured => "nothing_measured",
             Self::PolygonsCross => "polygons_cross",
             Self::PolygonsNotPlanar => "polygons_not_planar",
+            Self::PostsStandOut => "posts_stand_out",
             Self::OpenMesh => "open_mesh",
         }
     }

@@ -145,7 +145,7 @@ pub fn write(scene: &Scene, fault: Option<FileFault>, folder: &Path) -> Result<(
         name: "injected".into(),
         arguments: "injected".into(),
         vehicle: None,
-        file_warnings: Vec::new(),
+        file_facts: Default::default(),
         sha256: scene_sha256(scene),
     };
     let files =

@@ -67,7 +67,7 @@ fn a_pack_finds_faults_of_files_too() {
         name: "wall".into(),
         arguments: "wall.toml".into(),
         vehicle: None,
-        file_warnings: Vec::new(),
+        file_facts: Default::default(),
     };
     write_pack(&subject, None, &PackLabel::NONE, &pack, &Silent).unwrap();
     for fault in std::iter::once(None).chain(FileFault::ALL.map(Some)) {

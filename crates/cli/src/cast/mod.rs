@@ -10,8 +10,8 @@ use raypencil::cast::{
     ray_text, rays_from_bytes, write_answers, write_cast_page, write_set,
 };
 use raypencil::io::{
-    FileError, FileFrame, Limits, LoadedRaySets, OutputFolder, PolygonFacts, RayScene, bytes, create_folder,
-    hex_digits, load_ray_scene, polygon_warnings, read_ray_sets, read_triangles, sha256,
+    FileError, FileFacts, FileFrame, FileUnits, Limits, LoadedRaySets, OutputFolder, PolygonFacts, RayScene,
+    bytes, create_folder, file_warnings, hex_digits, load_ray_scene, read_ray_sets, read_triangles, sha256,
 };
 use raypencil::survey::{Warning, WarningCode};
 use raypencil::{CastRay, NamedRaySet, Progress, Sides, Triangles};
@@ -38,7 +38,7 @@ enum Rays {
 pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
     let spinner = Spinner::new();
     spinner.stage(&format!("{}: loading", command.mesh.display()));
-    let Given { mesh, mesh_sha256, rays, from, rays_sha256, frame, polygons } = given(command, &spinner)?;
+    let Given { mesh, mesh_sha256, rays, from, rays_sha256, frame, facts } = given(command, &spinner)?;
     let questions = Questions { any: command.any, all: command.all, margins: command.margins };
     let source = CastSource {
         mesh: command.mesh.display().to_string(),
@@ -46,7 +46,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
         rays: from,
         rays_sha256,
         frame,
-        polygons,
+        facts,
     };
     let mesh = &mesh;
     let count = match &rays {
@@ -131,7 +131,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
     let misses = |result: &Answered| result.answers.misses() == result.rays.len();
     let is_empty = command.ray.is_empty() && results.iter().all(misses) && !command.allow_empty;
     let outcome = if is_each_right && !is_empty { Outcome::Fine } else { Outcome::Differs };
-    let of_file = polygon_warnings(&source.polygons);
+    let of_file = file_warnings(&source.facts);
     let printed = if command.ray.is_empty() { MAX_PRINTED_RAYS } else { usize::MAX };
     if json {
         let documents: Vec<Value> = results.iter().map(|result| result.json(printed)).collect();
@@ -142,7 +142,8 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
         document["mesh"] = json!({
             "up": source.frame.up.map(|up| up.word()),
             "scale": source.frame.scale,
-            "polygons": source.polygons,
+                "units": source.facts.units.as_ref().map(FileUnits::to_json),
+            "polygons": source.facts.polygons,
             "warnings": of_file,
         });
         say(&format!("{document:#}\n"));
@@ -150,7 +151,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
     }
     warn(&of_file);
     results.iter().for_each(|result| warn(&result.warnings));
-    let mut text = format!("{}: {}\n", command.mesh.display(), mesh_text(mesh, &source.polygons));
+    let mut text = format!("{}: {}\n", command.mesh.display(), mesh_text(mesh, &source.facts.polygons));
     for result in &results {
         text += &result.text(printed);
     }
@@ -260,25 +261,24 @@ struct Given {
     rays_sha256: Option<String>,
     /// The axes and the unit that the options give for the mesh's file.
     frame: FileFrame,
-    polygons: PolygonFacts,
+    facts: FileFacts,
 }
 
 fn given(command: &Cast, spinner: &Spinner) -> Result<Given, Trouble> {
     let name = command.mesh.display().to_string();
     let has_rays = command.rays.is_some() || !command.ray.is_empty();
     let frame = file_frame(command.up, command.scale)?;
-    let (mesh, digests, polygons) = match is_toml(&command.mesh) {
+    let (mesh, digests, facts) = match is_toml(&command.mesh) {
         true if frame != FileFrame::default() => {
             let text = "--up and --scale are for a mesh; a scene file has them in [terrain] (--set terrain.scale=0.001)";
             return Err(Trouble::Usage(format!("{name}: {text}")));
         }
         true => {
-            let RayScene { triangles, sets, terrain_digests, polygon_facts, sha256 } =
+            let RayScene { triangles, sets, terrain_digests, file_facts, sha256 } =
                 load_ray_scene(&command.mesh, &command.set)?;
             if !has_rays {
                 let mesh_sha256 = terrain_digests.iter().map(hex_digits).collect();
                 let (rays, rays_sha256) = (Rays::Sets(sets), Some(sha256));
-                let polygons = polygon_facts;
                 return Ok(Given {
                     mesh: triangles,
                     mesh_sha256,
@@ -286,10 +286,10 @@ fn given(command: &Cast, spinner: &Spinner) -> Result<Given, Trouble> {
                     from: name,
                     rays_sha256,
                     frame,
-                    polygons,
+                    facts: file_facts,
                 });
             }
-            (triangles, terrain_digests, polygon_facts)
+            (triangles, terrain_digests, file_facts)
         }
         false if !command.set.is_empty() => {
             let text = "--set changes a scene file; expected a MESH that ends in .toml, or no --set";
@@ -302,7 +302,9 @@ fn given(command: &Cast, spinner: &Spinner) -> Result<Given, Trouble> {
         false => {
             let read = read_triangles(&command.mesh)?;
             let too_large = |source| FileError::Scene { origin: name.clone(), source };
-            (frame.triangles(read.triangles).map_err(too_large)?, read.digests, read.polygon_facts)
+            let units = Some(FileUnits::Mesh { is_gltf: read.is_gltf, frame });
+            let facts = FileFacts { units, polygons: read.polygon_facts };
+            (frame.triangles(read.triangles).map_err(too_large)?, read.digests, facts)
         }
     };
     let mesh_sha256 = digests.iter().map(hex_digits).collect();
@@ -317,7 +319,7 @@ fn given(command: &Cast, spinner: &Spinner) -> Result<Given, Trouble> {
             (rays, path.display().to_string(), Some(digest))
         }
     };
-    Ok(Given { mesh, mesh_sha256, rays, from, rays_sha256, frame, polygons })
+    Ok(Given { mesh, mesh_sha256, rays, from, rays_sha256, frame, facts })
 }
 
 fn is_toml(path: &Path) -> bool {

@@ -1,14 +1,13 @@
 //! `raypencil terrain import`: converts an elevation model to a GLB terrain; `import_mesh` converts a mesh.
 
-use raypencil::io::{Dem, MESH_ENDINGS, read_dem_with, write_terrain_glb};
+use raypencil::io::{Dem, DemFacts, MESH_ENDINGS, read_dem_with, write_terrain_glb};
 use raypencil::{Mesh, Progress as _};
 use serde_json::{Value, json};
 
 use crate::args::TerrainImport;
 use crate::console::{Spinner, say};
-use crate::terrain::dem_facts::{dem_facts, dem_lines, extend};
 use crate::terrain::import_mesh::{import_mesh, is_mesh};
-use crate::terrain::output::{check_output, create_folder};
+use crate::terrain::output::{check_output, create_folder, extend};
 use crate::{Outcome, Trouble};
 
 pub(crate) fn import(command: &TerrainImport, json: bool) -> Result<Outcome, Trouble> {
@@ -33,7 +32,7 @@ pub(crate) fn import(command: &TerrainImport, json: bool) -> Result<Outcome, Tro
     write_terrain_glb(&command.output, &mesh, &source(command, &dem))?;
     drop(spinner);
     let report = report(command, &dem, &mesh);
-    say(&if json { format!("{report:#}\n") } else { screen(&report) });
+    say(&if json { format!("{report:#}\n") } else { screen(&report, &dem.facts()) });
     Ok(Outcome::Fine)
 }
 
@@ -70,12 +69,12 @@ fn report(command: &TerrainImport, dem: &Dem, mesh: &Mesh) -> Value {
         "faces": mesh.faces().len(),
         "scene_origin_m": mesh.origin().to_array(),
     });
-    extend(&mut report, dem_facts(dem));
+    extend(&mut report, dem.facts().to_json());
     report
 }
 
 /// The report for people.
-fn screen(report: &Value) -> String {
+fn screen(report: &Value, facts: &DemFacts) -> String {
     let text = |value: &Value| value.as_str().map_or(value.to_string(), String::from);
     let at = |pointer: &str| report.pointer(pointer).map_or(String::new(), text);
     let stated = match report["registration_is_stated"] == true {
@@ -116,7 +115,7 @@ fn screen(report: &Value) -> String {
         ),
         ("heights", format!("{} to {} m", at("/height_m/0"), at("/height_m/1"))),
     ];
-    lines.extend(dem_lines(report));
+    lines.extend(facts.lines());
     lines.extend([
         ("faces", format!("{}, {fitted}", at("/faces"))),
         (

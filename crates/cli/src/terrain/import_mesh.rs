@@ -4,7 +4,8 @@ use std::io::Read as _;
 use std::path::Path;
 
 use raypencil::io::{
-    FileFrame, MESH_ENDINGS, PolygonFacts, TerrainFile, polygon_warnings, read_terrain, write_terrain_glb,
+    FileFacts, FileFrame, FileUnits, MESH_ENDINGS, TerrainFile, file_warnings, read_terrain,
+    write_terrain_glb,
 };
 use raypencil::{Mesh, Progress as _};
 use serde_json::{Value, json};
@@ -12,9 +13,7 @@ use serde_json::{Value, json};
 use crate::args::TerrainImport;
 use crate::console::{Spinner, say, warn};
 use crate::file_frame::file_frame;
-use crate::terrain::dem_facts::extend;
-use crate::terrain::mesh_facts::{mesh_facts, mesh_lines};
-use crate::terrain::output::{create_folder, refuse_same_file};
+use crate::terrain::output::{create_folder, extend, refuse_same_file};
 use crate::{Outcome, Trouble};
 
 /// Whether a file is read as a mesh: by its name; where that tells nothing, whatever does not begin as a TIFF does.
@@ -50,14 +49,14 @@ pub(super) fn import_mesh(command: &TerrainImport, json: bool) -> Result<Outcome
     let frame = file_frame(command.up, command.scale)?;
     let spinner = Spinner::new();
     spinner.stage(&format!("{}: reading", command.file.display()));
-    let TerrainFile { mesh, polygon_facts, .. } = read_terrain(&command.file, command.reflectivity, &frame)?;
+    let TerrainFile { mesh, facts, .. } = read_terrain(&command.file, command.reflectivity, &frame)?;
     spinner.stage(&format!("{}: writing", command.output.display()));
     create_folder(&command.output)?;
     write_terrain_glb(&command.output, &mesh, &source(command, &frame))?;
     drop(spinner);
-    warn(&polygon_warnings(&polygon_facts));
-    let report = report(command, &mesh, &polygon_facts);
-    say(&if json { format!("{report:#}\n") } else { screen(&report) });
+    warn(&file_warnings(&facts));
+    let report = report(command, &mesh, &facts);
+    say(&if json { format!("{report:#}\n") } else { screen(&report, &facts) });
     Ok(Outcome::Fine)
 }
 
@@ -71,7 +70,7 @@ fn source(command: &TerrainImport, frame: &FileFrame) -> Value {
 }
 
 /// The report for programs, from which that for people is made.
-fn report(command: &TerrainImport, mesh: &Mesh, facts: &PolygonFacts) -> Value {
+fn report(command: &TerrainImport, mesh: &Mesh, facts: &FileFacts) -> Value {
     let bounds = mesh.bounds().map(|bounds| bounds.map(|corner| (corner + mesh.origin()).to_array()));
     let along = |axis: usize| bounds.map(|[low, high]| [low[axis], high[axis]]);
     let mut report = json!({
@@ -83,15 +82,17 @@ fn report(command: &TerrainImport, mesh: &Mesh, facts: &PolygonFacts) -> Value {
         "reflectivity": command.reflectivity,
         "vertices": mesh.vertices().len(),
         "faces": mesh.faces().len(),
-        "polygons": facts,
+        "polygons": facts.polygons,
         "scene_origin_m": mesh.origin().to_array(),
     });
-    extend(&mut report, mesh_facts(&command.file, command.up, command.scale));
+    if let Some(units) = &facts.units {
+        extend(&mut report, units.to_json());
+    }
     report
 }
 
 /// The report for people.
-fn screen(report: &Value) -> String {
+fn screen(report: &Value, facts: &FileFacts) -> String {
     let text = |value: &Value| value.as_str().map_or(value.to_string(), String::from);
     let at = |pointer: &str| report.pointer(pointer).map_or(String::new(), text);
     let extent = |axis: &str| {
@@ -103,7 +104,7 @@ fn screen(report: &Value) -> String {
         ("extent", format!("{}, {} m", extent("x"), extent("y"))),
         ("heights", format!("{} m", extent("z"))),
     ];
-    lines.extend(mesh_lines(report));
+    lines.extend(facts.units.iter().flat_map(FileUnits::lines));
     lines.extend([
         ("vertices", at("/vertices")),
         ("faces", at("/faces")),

@@ -1,11 +1,9 @@
 //! `raypencil terrain`: generates, imports and inspects terrains.
 
-mod dem_facts;
 mod generate;
 mod import;
 mod import_mesh;
 mod inspect;
-mod mesh_facts;
 mod output;
 
 use crate::args::TerrainCommand;

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use serde_json::Value;
+
 use crate::Trouble;
 
 /// Creates the folder of an output file.
@@ -34,5 +36,12 @@ pub(super) fn refuse_same_file(output: &Path, input: &Path) -> Result<(), Troubl
             output.display()
         ))),
         false => Ok(()),
+    }
+}
+
+/// Adds the keys of one report to another.
+pub(super) fn extend(report: &mut Value, more: Value) {
+    if let (Value::Object(report), Value::Object(more)) = (report, more) {
+        report.extend(more);
     }
 }

@@ -161,7 +161,7 @@ pub fn write_validation(
 /// #     arguments: "small.toml".into(),
 /// #     sha256: "0".repeat(64),
 /// #     vehicle: None,
-/// #     file_warnings: Vec::new(),
+/// #     file_facts: Default::default(),
 /// # };
 /// # let folder = tempfile::tempdir()?;
 /// let tracer = contender("tracer").expect("a renderer's name").renderer;

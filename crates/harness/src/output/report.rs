@@ -237,7 +237,8 @@ fn candidate_plots(
 fn stands(subject: &Subject) -> Vec<String> {
     let found = Whereabouts::of(&subject.scene, subject.vehicle.as_ref());
     let terrain = [found.terrain_line(), found.rounding_line()];
-    [found.vehicle_line()].into_iter().chain(found.lines()).chain(terrain).collect()
+    let file = subject.file_facts.units.as_ref().map(|units| format!("Its file: {}", units.words()));
+    [found.vehicle_line()].into_iter().chain(found.lines()).chain(terrain).chain(file).collect()
 }
 
 fn tiles(validation: &Validation) -> Vec<Tile> {

@@ -70,7 +70,7 @@ const MAX_DEFECT_LINES: usize = 2;
 /// #     arguments: "small.toml".into(),
 /// #     sha256: "0".repeat(64),
 /// #     vehicle: None,
-/// #     file_warnings: Vec::new(),
+/// #     file_facts: Default::default(),
 /// # };
 /// // One renderer alone is no comparison: the screen says so, and it is no pass.
 /// let alone = validate(subject, &[contender("tracer").expect("a name")], JudgeShare::Sample, &Silent);
@@ -129,7 +129,11 @@ fn head(validation: &Validation, room: Room) -> String {
         1.. if is_told => cut(&stands.rounding_line(), room) + "\n",
         _ => String::new(),
     };
-    format!("{who}\nScene SHA-256 {}\n{vehicle}\n{terrain}\n{rounding}", scene_sha256(&subject.scene))
+    let file = match &subject.file_facts.units {
+        Some(units) => cut(&format!("Its file: {}", units.words()), room) + "\n",
+        None => String::new(),
+    };
+    format!("{who}\nScene SHA-256 {}\n{vehicle}\n{terrain}\n{file}{rounding}", scene_sha256(&subject.scene))
 }
 
 /// The table of quantities and classes over all sensors.

@@ -77,6 +77,8 @@ struct SceneName<'a> {
     /// Digest of the files or the input that define the scene.
     source_sha256: &'a str,
     arguments: &'a str,
+    /// What the terrain's file says of its units and axes, and what holds; null: the terrain has no file.
+    terrain_file: Option<Value>,
 }
 
 #[derive(Serialize)]
@@ -190,6 +192,7 @@ pub fn summary_json(validation: &Validation) -> String {
             sha256: scene_sha256(&subject.scene),
             source_sha256: &subject.sha256,
             arguments: &subject.arguments,
+            terrain_file: subject.file_facts.units.as_ref().map(|units| units.to_json()),
         },
         whereabouts: Whereabouts::of(&subject.scene, subject.vehicle.as_ref()),
         renderers: rendered.iter().map(renderer_summary).collect(),

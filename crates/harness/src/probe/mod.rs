@@ -156,7 +156,7 @@ pub enum NoSuchRay {
 /// #     arguments: "small.toml".into(),
 /// #     sha256: "0".repeat(64),
 /// #     vehicle: None,
-/// #     file_warnings: Vec::new(),
+/// #     file_facts: Default::default(),
 /// # };
 /// // The lowest row of the camera's 16 x 16 pixels looks at the ground.
 /// let place = Place { sensor: SensorId::Camera, i: 8, j: 15 };

@@ -5,6 +5,7 @@ mod citation;
 mod codec;
 mod coordinate_system;
 mod epsg;
+mod facts;
 mod gdal_metadata;
 mod geo_keys;
 mod georeference;
@@ -21,12 +22,12 @@ mod unit;
 mod write;
 
 pub use coordinate_system::{AxisSystem, UnitSource};
+pub use facts::{DemFacts, SpikeFacts};
 pub use model::{Dem, MAX_ERROR_RANGE_M};
 pub use nodata::NoData;
 pub use outliers::Spikes;
 pub use read::{
-    DemOptions, MAP_RANGE_M, WINDOW_SIDE_RANGE_M, dem_from_bytes, read_dem, read_dem_with, read_mesh,
-    read_posts,
+    DemOptions, MAP_RANGE_M, WINDOW_SIDE_RANGE_M, dem_from_bytes, read_dem, read_dem_with, read_posts,
 };
 pub use registration::Registration;
 pub use unit::{HeightUnit, LengthUnit};

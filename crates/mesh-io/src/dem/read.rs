@@ -7,11 +7,11 @@ use std::path::Path;
 
 use glam::DVec2;
 use raypencil_files::{Fault, FileError, Sha256Digest, file_sha256};
-use raypencil_scene::Mesh;
 use raypencil_terrain::HeightGrid;
 
 use crate::dem::blocks::Blocks;
 use crate::dem::coordinate_system::GivenUnits;
+use crate::dem::facts::DemFacts;
 use crate::dem::georeference::{self, Georeference};
 use crate::dem::heights::{Raw, heights};
 use crate::dem::lattice::Lattice;
@@ -116,29 +116,15 @@ pub fn dem_from_bytes(bytes: &[u8], file: &Path, window: Option<[f64; 4]>) -> Re
         .map_err(|fault| FileError::Dem(fault.in_file(file)))
 }
 
-/// Mesh of an elevation model, or of its part inside a window, and the digest of the whole file.
-///
-/// # Errors
-/// As [`read_dem`] and [`Dem::mesh`].
-pub fn read_mesh(
-    path: &Path,
-    options: &DemOptions,
-    max_error: Option<f64>,
-    reflectivity: f64,
-) -> Result<(Mesh, Sha256Digest), FileError> {
-    let mesh = read_dem_with(path, options)?.mesh(max_error, reflectivity)?;
-    let (_, sha) = file_sha256(path).map_err(|error| FileError::io(path, "read", error))?;
-    Ok((mesh, sha))
-}
-
-/// All posts of an elevation model, and the digest of its file.
+/// All posts of an elevation model, what its file says, and the digest of the file.
 ///
 /// # Errors
 /// As [`read_dem`].
-pub fn read_posts(path: &Path) -> Result<(HeightGrid, Sha256Digest), FileError> {
-    let posts = read_dem(path, None)?.posts;
+pub fn read_posts(path: &Path) -> Result<(HeightGrid, DemFacts, Sha256Digest), FileError> {
+    let dem = read_dem(path, None)?;
     let (_, sha) = file_sha256(path).map_err(|error| FileError::io(path, "read", error))?;
-    Ok((posts, sha))
+    let facts = dem.facts();
+    Ok((dem.posts, facts, sha))
 }
 
 fn read(path: &Path, mut file: impl Read + Seek, length: u64, options: &DemOptions) -> Result<Dem, Fault> {

@@ -23,6 +23,8 @@ pub struct TriangleFile {
     pub polygons: Option<Vec<u32>>,
     /// What was found out about the polygons that are no triangles.
     pub polygon_facts: PolygonFacts,
+    /// Whether the file is glTF, which is in metres with y up. The other formats state neither.
+    pub is_gltf: bool,
     /// Digests of the files that were read: the file itself, then the buffers beside it; of a pair of NPY files the
     /// vertices, then the faces.
     pub digests: Vec<Sha256Digest>,
@@ -89,7 +91,8 @@ pub fn read_triangles(path: &Path) -> Result<TriangleFile, FileError> {
     if let Some(files) = npy_pair::files(path) {
         let (vertices, faces) = (read_bytes(&files[0])?, read_bytes(&files[1])?);
         let parts = npy_pair::read(&files, [&vertices, &faces])?;
-        return finished(parts, PolygonFacts::default(), path, vec![sha256(&vertices), sha256(&faces)]);
+        let digests = vec![sha256(&vertices), sha256(&faces)];
+        return finished(parts, PolygonFacts::default(), path, digests, false);
     }
     parse(&read_bytes(path)?, path)
 }
@@ -154,7 +157,7 @@ pub(crate) fn parse(bytes: &[u8], file: &Path) -> Result<TriangleFile, FileError
     if format == Format::Obj {
         facts = facts.with_lines(|polygon| obj::line_of_polygon(bytes, polygon));
     }
-    finished(parts, facts, file, digests)
+    finished(parts, facts, file, digests, format == Format::Gltf)
 }
 
 /// Format of a file: by its first bytes, then by its ending, then by the rest of its bytes. OBJ has no mark of its own.
@@ -194,9 +197,10 @@ fn finished(
     polygon_facts: PolygonFacts,
     file: &Path,
     digests: Vec<Sha256Digest>,
+    is_gltf: bool,
 ) -> Result<TriangleFile, FileError> {
     let Parts { vertices, faces, polygons, .. } = parts;
     let triangles = Triangles::new(vertices, faces)
         .map_err(|source| FileError::Scene { origin: file.display().to_string(), source })?;
-    Ok(TriangleFile { triangles, polygons, polygon_facts, digests })
+    Ok(TriangleFile { triangles, polygons, polygon_facts, is_gltf, digests })
 }

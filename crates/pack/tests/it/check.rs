@@ -248,7 +248,7 @@ fn a_pack_of_questions_is_checked_by_its_scene() {
         arguments: String::new(),
         sha256: loaded.source_sha256,
         scene: loaded.scene,
-        file_warnings: Vec::new(),
+        file_facts: Default::default(),
     };
     let manifest = write_questions(&subject, &questions, &Silent).expect("a writable folder");
     assert_eq!((manifest.kind, manifest.blind_seed), (PackKind::Questions, None));

@@ -8,7 +8,7 @@ from . import terrain, testing
 from ._campaign import CampaignResult, campaign
 from ._cast import AllHits, CastResult, cast
 from ._drive import Drive, ElevationMap, Frame, Sectors, Vectors, drive
-from ._errors import RaypencilError, RaypencilFileError, RaypencilFileNotFoundError
+from ._errors import RaypencilError, RaypencilFileError, RaypencilFileNotFoundError, RaypencilWarning
 from ._judge import Judgement, judge
 from ._mesh import Mesh, load, load_mesh
 from ._packs import CheckResult, check, pack, pack_rays, read
@@ -36,6 +36,7 @@ __all__ = [
     "RaypencilError",
     "RaypencilFileError",
     "RaypencilFileNotFoundError",
+    "RaypencilWarning",
     "RenderResult",
     "Scene",
     "Sectors",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings as python_warnings
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -9,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _arrays, _raypencil
-from ._errors import RaypencilError, missing_extra
+from ._errors import RaypencilError, RaypencilWarning, missing_extra
 from ._mesh import as_mesh
 from ._progress import Progress, stages
 
@@ -81,13 +82,17 @@ class CastResult:
     (..., 2, 3) if they were asked for, else ``None``.
     """
 
-    __slots__ = ("arrays", "shape")
+    __slots__ = ("arrays", "shape", "warnings")
 
-    def __init__(self, arrays: dict[str, NDArray[Any]], shape: _arrays.Shape) -> None:
+    def __init__(
+        self, arrays: dict[str, NDArray[Any]], shape: _arrays.Shape, warnings: tuple[str, ...] = ()
+    ) -> None:
         #: The arrays by the names of the command's files.
         self.arrays = arrays
         #: Shape of the rays.
         self.shape = shape
+        #: What looks wrong in the rays and their mesh: no ray hits, most hits are backs, the mesh is open where crossings are asked.
+        self.warnings = warnings
         _arrays.frozen(arrays)
 
     @property
@@ -182,11 +187,11 @@ class CastResult:
         return f"<raypencil.CastResult: {int(self.hit.sum())} of {len(self)} rays hit{of_near}, shape {self.shape}>"
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"arrays": self.arrays, "shape": self.shape}
+        return {"arrays": self.arrays, "shape": self.shape, "warnings": self.warnings}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         # Arrays of a pickle may be written to.
-        self.__init__(state["arrays"], state["shape"])  # type: ignore[misc]
+        self.__init__(state["arrays"], state["shape"], state["warnings"])  # type: ignore[misc]
 
     def to_xarray(self) -> Any:
         """An ``xarray.Dataset`` with a dimension ``ray`` (or ``row`` and ``column``, or ``axis_0``, ...), units and meanings.
@@ -282,10 +287,47 @@ def cast(
     Returns:
         Arrays of the rays' own shape.
 
+    Warns:
+        RaypencilWarning: several rays and none hits (is the mesh in millimetres?), most first hits are backs, or all hits are
+            asked for of an open mesh. The sentences stand in ``warnings`` of the result too.
+
     Raises:
         RaypencilError: shapes that do not fit, and the first ray that is none: a number that is not finite or beyond 1e30, a
             direction of 0, a t_min below 0, a t_max below t_min, a t_blind below 0 or beyond t_max.
     """
+    result = answers(
+        mesh,
+        origins,
+        directions,
+        t_min=t_min,
+        t_max=t_max,
+        t_blind=t_blind,
+        query=query,
+        with_=with_,
+        fronts_only=fronts_only,
+        margins=margins,
+        progress=progress,
+    )
+    for sentence in result.warnings:
+        python_warnings.warn(sentence, RaypencilWarning, stacklevel=2)
+    return result
+
+
+def answers(
+    mesh: Any,
+    origins: ArrayLike,
+    directions: ArrayLike | None = None,
+    *,
+    t_min: ArrayLike | None = None,
+    t_max: ArrayLike | None = None,
+    t_blind: ArrayLike | None = None,
+    query: Query | tuple[Query, ...] = "first",
+    with_: Literal["referee", "tracer"] = "referee",
+    fronts_only: bool = False,
+    margins: bool = False,
+    progress: Progress = False,
+) -> CastResult:
+    """As :func:`cast`, without a warning."""
     if with_ not in ("referee", "tracer"):
         raise RaypencilError(f'with_ is {with_!r}; expected "referee" or "tracer"')
     asked = (query,) if isinstance(query, str) else tuple(query)
@@ -298,9 +340,9 @@ def cast(
     rays, shape = _arrays.rays(origins, directions, t_min, t_max, t_blind)
     core = as_mesh(mesh)._core
     with stages(progress) as on_stage:
-        flat = _raypencil.cast(core, rays, by_tracer, fronts_only, "any" in asked, "all" in asked, margins, on_stage)
+        flat, warnings = _raypencil.cast(core, rays, by_tracer, fronts_only, "any" in asked, "all" in asked, margins, on_stage)
     arrays = {
         name: array if name.startswith("all.") else array.reshape(shape + array.shape[1:])
         for name, array in flat.items()
     }
-    return CastResult(arrays, shape)
+    return CastResult(arrays, shape, tuple(warnings))

@@ -15,6 +15,10 @@ class RaypencilFileNotFoundError(RaypencilFileError, FileNotFoundError):
     """A file or a folder is not there."""
 
 
+class RaypencilWarning(UserWarning):
+    """Something looks wrong in what was given. The answers are right for it all the same."""
+
+
 def missing_extra(package: str, extra: str | None = None) -> ImportError:
     """The error for a package that is optional and not installed."""
     return ImportError(f"this needs {package}: pip install raypencil[{extra or package}]")

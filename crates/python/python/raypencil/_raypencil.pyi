@@ -129,7 +129,7 @@ def cast(
     all: bool,
     margins: bool,
     on_stage: _OnStage = None,
-) -> _Arrays: ...
+) -> tuple[_Arrays, list[str]]: ...
 def judge(
     mesh: MeshCore,
     rays: NDArray[np.float64],

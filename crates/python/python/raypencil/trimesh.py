@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import NO_FACE
-from ._cast import AllHits, CastResult, cast
+from ._cast import AllHits, CastResult, answers
 from ._errors import RaypencilError
 from ._mesh import Mesh, as_mesh
 
@@ -64,7 +64,7 @@ class RayMeshIntersector:
             origin, direction = np.zeros((0, 3)), np.zeros((0, 3))
         if origin.ndim != 2 or origin.shape != direction.shape or origin.shape[1] != 3:
             raise RaypencilError(f"rays are {origin.shape} and {direction.shape}; expected (m, 3) twice")
-        return cast(self._mesh(), origin, direction, query=query, with_="referee" if query == "all" else self._with)
+        return answers(self._mesh(), origin, direction, query=query, with_="referee" if query == "all" else self._with)
 
     @overload
     def intersects_id(

@@ -71,7 +71,7 @@ pub fn validated(subject: &Subject, contenders: &[Contender], validator: &mut Va
         name: subject.name.clone(),
         arguments: subject.arguments.clone(),
         sha256: subject.sha256.clone(),
-        file_warnings: subject.file_warnings.clone(),
+        file_facts: subject.file_facts.clone(),
     };
     validator.validate(subject, contenders, JudgeShare::Sample, &Silent)
 }

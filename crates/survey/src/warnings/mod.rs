@@ -1,8 +1,8 @@
 //! All rules on one scene.
 
+pub(crate) mod file;
 pub(crate) mod hits;
 pub(crate) mod image;
-pub(crate) mod polygons;
 pub(crate) mod terrain;
 pub(crate) mod vehicle;
 

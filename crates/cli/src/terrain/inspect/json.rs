@@ -1,5 +1,6 @@
 //! The report for programs.
 
+use raypencil::io::FileUnits;
 use raypencil::terrain::{Inspection, MeshElement, Occurrence, Occurrences, OpenEdgePiece};
 use serde_json::{Value, json};
 
@@ -11,8 +12,8 @@ pub(super) fn report_json(report: &Report) -> String {
     printed["mesh"] = report.mesh.into();
     printed["passes"] = report.passes().into();
     printed["kinds_wrong"] = report.fault_kinds().into();
-    printed["polygons"] = json!(report.polygons);
-    printed["file"] = report.facts.of_file.clone();
+    printed["polygons"] = json!(report.facts.polygons);
+    printed["file"] = json!(report.facts.units.as_ref().map(FileUnits::to_json));
     if let Some(repaired) = &report.repaired {
         let repairs = &repaired.repairs;
         printed["repaired"] = json!({

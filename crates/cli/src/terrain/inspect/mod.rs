@@ -9,7 +9,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use raypencil::io::{
-    DEFAULT_REFLECTIVITY, FileFrame, Overrides, PolygonFacts, SceneSource, load, read_dem_with, read_terrain,
+    DEFAULT_REFLECTIVITY, FileFacts, FileFrame, Overrides, SceneSource, load, read_dem_with, read_terrain,
     write_terrain_glb,
 };
 use raypencil::terrain::{inspect as inspect_mesh, repair};
@@ -18,12 +18,10 @@ use serde_json::{Value, json};
 
 use crate::args::TerrainInspect;
 use crate::console::{Spinner, say};
-use crate::terrain::dem_facts::{dem_facts, dem_lines};
-use crate::terrain::mesh_facts::{mesh_facts, mesh_lines};
 use crate::terrain::output::{create_folder, is_glb};
 use crate::{Outcome, Trouble};
 
-use self::report::{Facts, Repaired, Report};
+use self::report::{Repaired, Report};
 
 pub(crate) fn inspect(command: &TerrainInspect, json: bool) -> Result<Outcome, Trouble> {
     let output = match (&command.output, command.repair) {
@@ -43,28 +41,20 @@ pub(crate) fn inspect(command: &TerrainInspect, json: bool) -> Result<Outcome, T
             command.mesh
         )));
     }
-    let mut facts = Facts::default();
-    let mut polygons = PolygonFacts::default();
-    let mesh: Arc<Mesh> = match &source {
+    let (mesh, facts): (Arc<Mesh>, FileFacts) = match &source {
         // The mesh alone: a scene would need a place for the vehicle.
         SceneSource::Mesh(path) if command.set.is_empty() => {
-            facts.of_file = mesh_facts(path, None, None);
-            facts.lines = mesh_lines(&facts.of_file);
             let read = read_terrain(path, DEFAULT_REFLECTIVITY, &FileFrame::default())?;
-            polygons = read.polygon_facts;
-            Arc::new(read.mesh)
+            (Arc::new(read.mesh), read.facts)
         }
         SceneSource::Dem(path) if command.set.is_empty() => {
             let dem = read_dem_with(path, &command.dem.options(None))?;
-            facts.of_file = dem_facts(&dem);
-            facts.lines = dem_lines(&facts.of_file);
-            Arc::new(dem.mesh(None, DEFAULT_REFLECTIVITY)?)
+            (Arc::new(dem.mesh(None, DEFAULT_REFLECTIVITY)?), dem.facts().into())
         }
         _ => {
             let settings = command.set.clone();
             let loaded = load(&command.mesh, &Overrides { settings, ..Overrides::default() })?;
-            polygons = loaded.polygon_facts;
-            Arc::clone(loaded.scene.mesh())
+            (Arc::clone(loaded.scene.mesh()), loaded.file_facts)
         }
     };
     spinner.stage(&format!("{}: inspecting {} faces", command.mesh, mesh.faces().len()));
@@ -83,7 +73,7 @@ pub(crate) fn inspect(command: &TerrainInspect, json: bool) -> Result<Outcome, T
         }
     };
     drop(spinner);
-    let report = Report { mesh: &command.mesh, facts, polygons, found, repaired };
+    let report = Report { mesh: &command.mesh, facts, found, repaired };
     say(&if json { json::report_json(&report) } else { screen::screen(&report) });
     Ok(if report.passes() { Outcome::Fine } else { Outcome::Differs })
 }

@@ -2,29 +2,17 @@
 
 use std::path::Path;
 
-use raypencil::io::PolygonFacts;
+use raypencil::io::FileFacts;
 use raypencil::terrain::{Inspection, Repairs};
-use serde_json::Value;
-
-/// What a file says about its units and axes.
-#[derive(Default)]
-pub(super) struct Facts {
-    /// For programs; null for a scene.
-    pub(super) of_file: Value,
-    /// For people.
-    pub(super) lines: Vec<(&'static str, String)>,
-}
 
 /// The result of `terrain inspect`.
 pub(super) struct Report<'a> {
     /// The mesh as the command line names it.
     pub(super) mesh: &'a str,
     /// What its file says.
-    pub(super) facts: Facts,
+    pub(super) facts: FileFacts,
     /// The inspection of that mesh.
     pub(super) found: Inspection,
-    /// What was found out about the polygons of its file.
-    pub(super) polygons: PolygonFacts,
     /// The repair; `None` without `--repair`.
     pub(super) repaired: Option<Repaired<'a>>,
 }
@@ -47,7 +35,7 @@ impl Report<'_> {
 
     /// Number of kinds of faults that are left.
     pub(super) fn fault_kinds(&self) -> usize {
-        self.last().fault_kinds() + usize::from(self.polygons.crossing.is_some())
+        self.last().fault_kinds() + usize::from(self.facts.polygons.crossing.is_some())
     }
 
     /// The inspection of the repaired mesh, or, without one, of the given mesh.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use raypencil::io::PolygonFacts;
+use raypencil::io::{FileUnits, PolygonFacts};
 use raypencil::report::{count, number};
 use raypencil::terrain::{Inspection, MeshElement, Occurrence, Occurrences, Repairs};
 
@@ -26,18 +26,18 @@ pub(super) fn screen(report: &Report) -> String {
     for words in extent(found) {
         line(&words);
     }
-    for (name, words) in &report.facts.lines {
+    for (name, words) in report.facts.units.iter().flat_map(FileUnits::lines) {
         line(&format!("  {name:<13} {words}"));
     }
     line("");
-    for row in fault_rows(found, &report.polygons) {
+    for row in fault_rows(found, &report.facts.polygons) {
         line(&format!("{} {:>11}  {}", if row.count > 0 { '!' } else { ' ' }, counted(row.count), row.words));
         if !row.places.is_empty() {
             line(&format!("{:INDENT$}{}", "", row.places));
         }
     }
     line("");
-    for words in facts(found, &report.polygons) {
+    for words in facts(found, &report.facts.polygons) {
         line(&words);
     }
     line("");
@@ -187,7 +187,7 @@ fn repairs_made(repairs: &Repairs) -> String {
 /// The last line.
 fn verdict(report: &Report) -> String {
     let last = report.last();
-    let checks = fault_rows(last, &report.polygons).len();
+    let checks = fault_rows(last, &report.facts.polygons).len();
     let place = if report.repaired.is_some() { " in the repaired mesh" } else { "" };
     match report.fault_kinds() {
         0 => format!("PASS {checks} checks found nothing{place}."),

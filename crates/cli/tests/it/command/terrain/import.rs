@@ -152,8 +152,8 @@ fn a_mesh_becomes_a_terrain() {
     for line in [
         "extent         x 0.000 to 4.000, y 1.000 to 3.000 m",
         "heights        z 1.000 to 1.000 m",
-        "up axis        y, as --up says",
-        "scale          0.01 m for each unit of the file, as --scale says",
+        "up axis        y, as is given",
+        "scale          0.01 m for each unit of the file, as is given",
         "vertices       4",
         "faces          2",
         "floor.glb",
@@ -225,9 +225,9 @@ fn what_a_model_does_not_say_is_said_by_options() {
     for line in [
         "extent         x 304800.3048 to 304802.7",
         "heights        -12.4968",
-        "unit           foot (EPSG:9002), 0.3048 m, as --unit says",
-        "z unit         US survey foot (EPSG:9003), 0.3048006096012192 m, as --z-unit says; depths, which became heights",
-        "unknown posts  2 (NaN; -9999 as the file says; 42 as --nodata says)",
+        "unit           foot (EPSG:9002), 0.3048 m, as is given",
+        "z unit         US survey foot (EPSG:9003), 0.3048006096012192 m, as is given; depths, which became heights",
+        "unknown posts  2 (NaN; -9999 as the file says; 42 as is given)",
     ] {
         assert!(out.contains(line), "{line} is not in:\n{out}");
     }
@@ -294,9 +294,34 @@ fn a_constant_that_nobody_declared_is_refused_wherever_a_model_is_read() {
     with_constant(path, -32768.0, 1);
     let out = screen(path, &["terrain", "inspect", "hole.tif"], 0);
     assert!(
-        out.contains(
-            "1 of the posts stand out: the worst, at (1000001.0, 499.0), is 32868.0 m below all others"
-        ),
+        out.contains("1 of the posts stand out: the worst, at (1000001, 499), is 32868.0 m below all others"),
         "{out}"
     );
+}
+
+#[test]
+fn a_scene_on_a_model_says_what_its_file_says() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let path = folder.path();
+    with_constant(path, -32768.0, 30);
+    let text = "version = 1\n[terrain]\ndem = \"hole.tif\"\ndem_nodata = \"none\"\ndem_z_unit = \"ft\"\n[vehicle]\nposition_m = [1000024, 476]\n\
+                [camera]\nwidth_px = 12\nheight_px = 12\n[[beam]]\ncolumns = 16\nrows = 2\n";
+    std::fs::write(path.join("scene.toml"), text).expect("a file");
+    let inspected = screen(path, &["terrain", "inspect", "scene.toml"], 0);
+    assert!(inspected.contains("  z unit        foot (EPSG:9002), 0.3048 m, as is given\n"), "{inspected}");
+    let out = raypencil(path, &["validate", "scene.toml", "-o", "out"]);
+    let said = String::from_utf8_lossy(&out.stdout);
+    assert!(said.contains("Its file: map in metre (EPSG:9001), by default"), "{said}");
+    assert!(said.contains("heights in foot (EPSG:9002), 0.3048 m, as is given"), "{said}");
+    assert!(said.contains("30 of the posts stand out: the worst, at ("), "{said}");
+    let summary = std::fs::read(path.join("out/summary.json")).expect("a summary");
+    let summary: Value = serde_json::from_slice(&summary).expect("JSON");
+    let file = &summary["scene"]["terrain_file"];
+    assert_eq!((&file["vertical"]["unit_epsg"], &file["spikes"]["count"]), (&9002.into(), &30.into()));
+    assert_eq!(summary["warnings"][0]["code"], "posts_stand_out");
+    let page = std::fs::read_to_string(path.join("out/report.html")).expect("a page");
+    assert!(page.contains("heights in foot (EPSG:9002)"), "the page says it");
+    // A mesh in STL says nothing, and a ground without a file has none.
+    let built_in = raypencil(path, &["validate", "pyramids", "--set", "camera.width_px=12", "-o", "other"]);
+    assert!(!String::from_utf8_lossy(&built_in.stdout).contains("Its file"));
 }

@@ -1,4 +1,4 @@
-//! Rules on the polygons of a terrain's file.
+//! Rules on the polygons and the heights of a terrain's file.
 
 use raypencil_report::{counted, number};
 
@@ -25,4 +25,13 @@ pub fn polygons_not_planar(count: u64, worst: &str, distance: f64) -> Warning {
         number(distance)
     );
     Warning::of_scene(WarningCode::PolygonsNotPlanar, sentence)
+}
+
+/// Warns that heights of an elevation model stand out of it. `found` says which and how far, without a full stop.
+pub fn posts_stand_out(found: &str) -> Warning {
+    let sentence = format!(
+        "{found}: is it ground? Samples that stand for \"not known\" are named by dem_nodata of the scene file or --nodata of terrain \
+         import."
+    );
+    Warning::of_scene(WarningCode::PostsStandOut, sentence)
 }
