@@ -53,7 +53,7 @@ designs:
 
 # The Python package into a fresh environment; its tests and its types
 python:
-    crates/python/run_tests.sh
+    crates/doors/python/run_tests.sh
 
 # Writes the packs of data/packs again, and runs the programs of reference/ on them
 packs:

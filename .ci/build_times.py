@@ -76,8 +76,8 @@ def main() -> None:
     again = ["cargo", "build", "--release"]
     steps = [
         ("`cargo run --release`, from nothing", run, None),
-        ("again, after a change in `referee/src/lib.rs`", again, Path("crates/referee/src/lib.rs")),
-        ("again, after a change in `cli/src/lib.rs`", again, Path("crates/cli/src/lib.rs")),
+        ("again, after a change in `referee/src/lib.rs`", again, Path("crates/engines/referee/src/lib.rs")),
+        ("again, after a change in `cli/src/lib.rs`", again, Path("crates/doors/cli/src/lib.rs")),
     ]
     if not arguments.skip_tests:
         steps.append(("`cargo test --workspace`, from nothing", ["cargo", "test", "--workspace"], None))

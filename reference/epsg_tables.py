@@ -1,4 +1,4 @@
-"""Writes the tables of units by code in crates/mesh-io/src/dem/epsg, from the EPSG data set in the database of PROJ.
+"""Writes the tables of units by code in crates/world/mesh-io/src/dem/epsg, from the EPSG data set in the database of PROJ.
 
     python3 -m pip install pyproj==3.7.2
     python3 reference/epsg_tables.py && cargo fmt
@@ -13,7 +13,7 @@ from pathlib import Path
 
 from pyproj.datadir import get_data_dir
 
-FOLDER = Path(__file__).parent.parent / "crates/mesh-io/src/dem/epsg"
+FOLDER = Path(__file__).parent.parent / "crates/world/mesh-io/src/dem/epsg"
 HEAD = "//! {what} Written by `reference/epsg_tables.py` from EPSG {version}, as in the database of PROJ {proj}.\n\n"
 
 

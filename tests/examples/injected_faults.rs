@@ -20,7 +20,7 @@ const HEAD: &str = "\
 # Injected faults
 
 This page measures whether a comparison finds an error. Each fault is injected into a third, naive renderer
-([`crates/naive`](../../crates/naive/src/lib.rs)), or into the files of a correct one
+([`crates/engines/naive`](../../crates/engines/naive/src/lib.rs)), or into the files of a correct one
 ([`tests/src/injected_faults`](../../tests/src/injected_faults/mod.rs)). The scenes of its kind are compared one after
 the other until a ray reveals the fault. `just injected-faults` writes this page.
 

@@ -47,7 +47,8 @@ impl PlantedFault {
     pub fn crate_name(&self) -> &str {
         self.file
             .strip_prefix("crates/")
-            .and_then(|rest| rest.split_once("/src/"))
+            .and_then(|rest| rest.split_once('/'))
+            .and_then(|(_floor, rest)| rest.split_once("/src/"))
             .map_or("", |(name, _)| name)
     }
 
@@ -59,7 +60,7 @@ impl PlantedFault {
     /// let text = |text: &str| text.to_string();
     /// let fault = PlantedFault {
     ///     name: text("half-for-whole"),
-    ///     file: text("crates/scene/src/beam.rs"),
+    ///     file: text("crates/base/scene/src/beam.rs"),
     ///     find: text("0.5 * fan"),
     ///     replace: text("fan"),
     ///     wrong: text("The whole angle stands for the half."),

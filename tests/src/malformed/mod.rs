@@ -1,7 +1,7 @@
 //! Malformed and malicious files for every reader, each with the command that reads it and the words of the refusal.
 //! `docs/evidence/malformed-inputs.md` lists them.
 //!
-//! The files are made here, byte by byte; none is committed. `crates/cli/tests/it/malformed`, where the binary's path
+//! The files are made here, byte by byte; none is committed. `crates/doors/cli/tests/it/malformed`, where the binary's path
 //! is known, asserts what holds for every refusal: exit code 2, one short message that names the file, no other
 //! output, no file written, little memory and time.
 //!
@@ -86,12 +86,12 @@ pub fn table() -> String {
     let mut text = String::from(
         "# Malformed inputs\n\n\
          The command refuses each of these inputs. `tests/src/malformed` makes them;\n\
-         `crates/cli/tests/it/malformed` runs the command on each of them in its own process, with at most 512 MB\n\
+         `crates/doors/cli/tests/it/malformed` runs the command on each of them in its own process, with at most 512 MB\n\
          of memory and 2 s of processor time. It asserts exit code 2, one short message with the words below,\n\
          nothing on standard output, and no file written. The readers have [fuzz targets](../../fuzz/README.md)\n\
          too. `just malformed-inputs` writes this page.\n\n\
          Inputs by rule are not listed: a good file in which one place after the other is cut, replaced, doubled or left\n\
-         out. `crates/cli/tests/it/malformed/hostile.rs` has their number for meshes, rays, generated ground and records of\n\
+         out. `crates/doors/cli/tests/it/malformed/hostile.rs` has their number for meshes, rays, generated ground and records of\n\
          campaigns, and runs each under the same limits.\n\n\
          | case | input | words of the message |\n| --- | --- | --- |\n",
     );

@@ -25,7 +25,7 @@ const ZSTD: u32 = 50_000;
 type Entry = (u16, u16, u32, Vec<u8>);
 
 /// A little-endian file of one strip and one directory with any entries. (The writer of well-formed files, with types,
-/// codecs and tiles, is in `crates/mesh-io/tests/it/dem/write.rs`.)
+/// codecs and tiles, is in `crates/world/mesh-io/tests/it/dem/write.rs`.)
 #[derive(Clone)]
 struct Tiff {
     entries: Vec<Entry>,

@@ -1,7 +1,7 @@
 //! Hostile inputs by rule: a good file, in which one place after the other is cut, replaced, doubled or left out.
 //!
 //! The cases of the other modules were written one by one, each for a check that a reader must have. These cover every place
-//! of a small file, so that no check is forgotten. `crates/cli/tests/it/malformed` runs them under the same limits.
+//! of a small file, so that no check is forgotten. `crates/doors/cli/tests/it/malformed` runs them under the same limits.
 //!
 //! * [`Family`]: the cases of a reader, and those of them that are good files after all.
 //! * `edits`: cuts, and values in place of others. `calibrations`, `campaign`, `rays`, `meshes`, `generate`: the families.

@@ -5,9 +5,9 @@ use std::fs;
 
 use cargo_metadata::{DependencyKind, MetadataCommand, Package};
 
-use super::source::root;
+use super::source::{FOLDERS, crates, root};
 
-/// Each crate by its folder, and its floor. A crate may depend on crates of lower floors, never on its own floor or above.
+/// Each crate, and its floor. A crate may depend on crates of lower floors, never on its own floor or above.
 const FLOORS: &[(&str, u32)] = &[
     ("scene", 1),
     ("scanline", 2),
@@ -96,7 +96,7 @@ fn stands_on(package: &Package, house: &BTreeMap<String, Package>) -> [BTreeSet<
 /// What is wrong with the dependencies of one crate: `normal` ones, and those `of_tests`.
 fn faults(name: &str, normal: &BTreeSet<String>, of_tests: &BTreeSet<String>) -> Vec<String> {
     let floor = |name: &str| FLOORS.iter().find(|(of, _)| *of == name).map(|(_, floor)| *floor);
-    let Some(level) = floor(name) else { return vec![format!("crates/{name} has no floor in FLOORS")] };
+    let Some(level) = floor(name) else { return vec![format!("{name} has no floor in FLOORS")] };
     let mut faults = Vec::new();
     for other in normal.iter().filter(|other| floor(other).is_none_or(|below| below >= level)) {
         faults.push(format!("{name} depends on {other}, which is not on a lower floor"));
@@ -124,6 +124,59 @@ fn crates_stand_on_lower_floors_only() {
         found.extend(faults(name, &normal, &of_tests));
     }
     assert!(found.is_empty(), "{found:#?}");
+}
+
+/// What is wrong with where crates lie: in a folder that is no floor's, or on one of a folder above.
+fn misplaced(crates: &BTreeMap<String, String>, stands_on: impl Fn(&str) -> BTreeSet<String>) -> Vec<String> {
+    let level = |name: &str| {
+        let folder = crates[name].split('/').nth(1);
+        FOLDERS.iter().position(|known| Some(*known) == folder)
+    };
+    let above = |name: &str| {
+        let others = stands_on(name).into_iter();
+        others.filter(|other| level(other) > level(name)).collect::<Vec<_>>()
+    };
+    let faults = crates.iter().map(|(name, path)| (path, above(name)));
+    faults
+        .filter(|(_, above)| !above.is_empty())
+        .map(|(path, above)| format!("{path} stands on {}, in a folder above", above.join(", ")))
+        .collect()
+}
+
+/// Folder after folder, from the bottom up: a newcomer who reads them in this order meets nothing that comes later.
+#[test]
+fn six_folders_show_the_floors() {
+    let house = house();
+    let crates = crates();
+    assert_eq!(crates.keys().collect::<Vec<_>>(), house.keys().collect::<Vec<_>>());
+    let of_folders = fs::read_dir(root().join("crates"))
+        .expect("the folders")
+        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned());
+    assert_eq!(of_folders.collect::<BTreeSet<_>>(), FOLDERS.map(String::from).into());
+    let normal = |name: &str| stands_on(&house[name], &house)[0].clone();
+    assert_eq!(misplaced(&crates, normal), Vec::<String>::new());
+    // Each is told in its folder's page, in ten lines or a few more.
+    for folder in FOLDERS {
+        let page = fs::read_to_string(root().join(format!("crates/{folder}/README.md"))).expect("a page");
+        assert!(page.lines().count() <= 16, "crates/{folder}/README.md is for a glance");
+        let told: BTreeSet<&str> =
+            page.lines().filter_map(|line| line.strip_prefix("* [")?.split(']').next()).collect();
+        let here = crates.iter().filter(|(_, path)| path.starts_with(&format!("crates/{folder}/")));
+        assert_eq!(told, here.map(|(name, _)| name.as_str()).collect(), "crates/{folder}/README.md");
+    }
+}
+
+#[test]
+fn a_crate_in_a_wrong_folder_is_found() {
+    let crates =
+        [("scene", "crates/base/scene"), ("judge", "crates/verdict/judge"), ("files", "crates/base/files")];
+    let crates = crates.map(|(name, path)| (name.to_string(), path.to_string())).into();
+    let arrow = |from: &'static str, to: &'static str| {
+        move |name: &str| if name == from { BTreeSet::from([to.to_string()]) } else { BTreeSet::new() }
+    };
+    assert_eq!(misplaced(&crates, arrow("files", "judge")).len(), 1);
+    assert!(misplaced(&crates, arrow("judge", "files")).is_empty());
+    assert!(misplaced(&crates, arrow("files", "scene")).is_empty());
 }
 
 #[test]

@@ -32,8 +32,8 @@ const HEAVIEST: &[&str] = &[
 
 /// Packages that were left out, because something smaller does the same.
 const LEFT_OUT: &[(&str, &str)] = &[
-    ("resvg", "drawings are painted by tiny-skia: crates/report/src/paint.rs"),
-    ("skrifa", "letters are read by ttf-parser: crates/report/src/letters.rs"),
+    ("resvg", "drawings are painted by tiny-skia: crates/base/report/src/paint.rs"),
+    ("skrifa", "letters are read by ttf-parser: crates/base/report/src/letters.rs"),
     ("zstd-sys", "bags are compressed by LZ4"),
     ("icu_segmenter", "the lock holds textwrap, of miette, at 0.16.2"),
 ];

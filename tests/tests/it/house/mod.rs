@@ -11,3 +11,5 @@ mod release;
 mod scene_items;
 mod source;
 mod unsafe_code;
+
+pub(crate) use source::crates;

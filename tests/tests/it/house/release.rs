@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 use toml::Table;
 
-use super::source::root;
+use super::source::{crates, root};
 
 fn text(path: &str) -> String {
     fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
@@ -52,14 +52,13 @@ fn crates_behind_the_door_are_marked() {
     // Everything but the library, the command and the Python package.
     let faces = ["raypencil", "cli", "python"];
     let mut internal = 0;
-    for entry in fs::read_dir(root().join("crates")).expect("the crates") {
-        let name = entry.expect("an entry").file_name().to_string_lossy().into_owned();
-        let manifest: Table = text(&format!("crates/{name}/Cargo.toml")).parse().expect("TOML");
+    for (name, folder) in crates() {
+        let manifest: Table = text(&format!("{folder}/Cargo.toml")).parse().expect("TOML");
         let description = manifest["package"]["description"].as_str().expect("a description").to_string();
         let is_face = faces.contains(&name.as_str());
-        assert_ne!(description.starts_with("Internal to raypencil. "), is_face, "crates/{name}/Cargo.toml");
-        let docs = text(&format!("crates/{name}/src/lib.rs"));
-        assert_ne!(docs.contains("//! Internal to raypencil: "), is_face, "crates/{name}/src/lib.rs");
+        assert_ne!(description.starts_with("Internal to raypencil. "), is_face, "{folder}/Cargo.toml");
+        let docs = text(&format!("{folder}/src/lib.rs"));
+        assert_ne!(docs.contains("//! Internal to raypencil: "), is_face, "{folder}/src/lib.rs");
         internal += usize::from(!is_face);
     }
     assert!(internal > 20, "{internal} internal crates");

@@ -80,7 +80,7 @@ fn scene_holds_only_what_is_listed() {
     let gone: Vec<&String> = known.difference(&list).collect();
     assert!(
         new.is_empty() && gone.is_empty(),
-        "The public items of crates/scene have changed. Everything there is shared by all renderers and by the \
+        "The public items of crates/base/scene have changed. Everything there is shared by all renderers and by the \
          referee, and what is shared no comparison can find wrong. A definition may stand there; a kernel (an \
          intersection, a projection, a clip, a cull) must not: write it in each renderer. If it is a definition, \
          add these lines to tests/tests/it/house/scene_public_items.txt, sorted: {new:#?}; and remove these: {gone:#?}"

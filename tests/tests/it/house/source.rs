@@ -1,5 +1,6 @@
 //! The sources of a crate, parsed.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -8,6 +9,26 @@ use quote::ToTokens;
 /// The root of the workspace.
 pub(crate) fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("tests/ is in the workspace").to_path_buf()
+}
+
+/// The folders in `crates`, from the lowest floor up.
+pub(crate) const FOLDERS: [&str; 6] = ["base", "engines", "world", "verdict", "tasks", "doors"];
+
+/// Every crate by its name, with its folder from the root on, such as `crates/base/scene`.
+pub(crate) fn crates() -> BTreeMap<String, String> {
+    let mut found = BTreeMap::new();
+    for folder in FOLDERS {
+        let of_floor = format!("crates/{folder}");
+        for entry in fs::read_dir(root().join(&of_floor)).expect("a folder of crates") {
+            let entry = entry.expect("an entry");
+            if entry.path().is_dir() {
+                let name = entry.file_name().to_string_lossy().into_owned();
+                let path = format!("{of_floor}/{name}");
+                assert_eq!(found.insert(name, path), None, "a name for two crates");
+            }
+        }
+    }
+    found
 }
 
 /// The Rust files of a crate, with their names.
@@ -22,11 +43,11 @@ pub(crate) fn sources(of: &str) -> Vec<(String, syn::File)> {
             }
         }
     }
-    let folder = root().join("crates").join(of).join("src");
+    let folder = root().join(&crates()[of]).join("src");
     let mut files = Vec::new();
     collect(&folder, &mut files);
     files.sort();
-    assert!(!files.is_empty(), "crates/{of} has no sources");
+    assert!(!files.is_empty(), "{of} has no sources");
     let read = |path: PathBuf| {
         let name = path.strip_prefix(root()).expect("in the workspace").display().to_string();
         let text = fs::read_to_string(&path).expect("a source file");
@@ -51,4 +72,23 @@ pub(crate) fn written(tokens: &impl ToTokens) -> String {
         text = text.replace(spaced, tight);
     }
     text
+}
+
+/// The map says where to look; a file that moved is missing there first.
+#[test]
+fn the_map_leads_to_files_that_are_there() {
+    let map = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("the map");
+    let crates = crates();
+    let mut found = 0;
+    for word in map.split('`').skip(1).step_by(2) {
+        let Some((name, rest)) = word.split_once('/') else { continue };
+        let Some(folder) =
+            crates.get(name).filter(|_| rest.starts_with("src/") || rest.starts_with("script/"))
+        else {
+            continue;
+        };
+        assert!(root().join(folder).join(rest).exists(), "ARCHITECTURE.md: {word} is not there");
+        found += 1;
+    }
+    assert!(found > 40, "{found} places on the map");
 }

@@ -4,7 +4,7 @@ use std::fs;
 
 use toml::Table;
 
-use super::source::root;
+use super::source::{crates, root};
 
 /// The crates that may have unsafe code, and the one file of each that has it.
 const MAY: &[(&str, &str)] = &[
@@ -43,10 +43,9 @@ fn workspace() -> Table {
 
 /// The folders of all members: crates, and the tests of the whole house.
 fn members() -> Vec<(String, String)> {
-    let crates = fs::read_dir(root().join("crates")).expect("the crates");
-    let named = crates.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned());
-    named
-        .map(|name| (format!("crates/{name}/Cargo.toml"), name))
+    crates()
+        .into_iter()
+        .map(|(name, folder)| (format!("{folder}/Cargo.toml"), name))
         .chain([("tests/Cargo.toml".into(), "tests".into())])
         .collect()
 }
@@ -62,8 +61,8 @@ fn unsafe_code_is_where_it_may_be() {
     assert!(members.len() > 25, "{} members", members.len());
     // A crate that no longer needs it leaves the list.
     for (name, file) in MAY {
-        let text = fs::read_to_string(root().join("crates").join(name).join(file)).expect("the file");
-        assert!(text.contains("#[allow(unsafe_code, reason = "), "crates/{name}/{file} has no unsafe code");
+        let text = fs::read_to_string(root().join(&crates()[*name]).join(file)).expect("the file");
+        assert!(text.contains("#[allow(unsafe_code, reason = "), "{file} of {name} has no unsafe code");
     }
 }
 
@@ -74,7 +73,7 @@ fn lints_that_let_unsafe_code_in_are_found() {
     assert_eq!(fault("scene", &manifest("lints.workspace = true"), &workspace), None);
     assert!(fault("scene", &manifest(""), &workspace).is_some());
     assert!(fault("scene", &manifest("[lints.rust]\nunsafe_code = \"deny\""), &workspace).is_some());
-    let mut own = read("crates/tracer/Cargo.toml");
+    let mut own = read("crates/engines/tracer/Cargo.toml");
     assert_eq!(fault("tracer", &own, &workspace), None);
     assert!(fault("scanline", &own, &workspace).is_some());
     own["lints"]["rust"]["unsafe_code"] = "allow".into();

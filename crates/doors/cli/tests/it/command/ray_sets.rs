@@ -1,0 +1,218 @@
+//! `[[rays]]` in a scene: rays of a LiDAR beside camera and beams.
+
+use std::fs;
+
+use raypencil::io::{Limits, read_npy_numbers, write_npy_numbers};
+use raypencil_tests::schema::schema_faults;
+use serde_json::Value;
+use tempfile::TempDir;
+
+use super::{assert_trouble, raypencil, screen};
+
+/// A small camera and no beams on the pyramids, and two sets: one ray straight down from 2 m above the vehicle, and a
+/// raster to the front.
+const SCENE: &str = "version = 1
+beam = []
+[vehicle]
+position_m = [0.5, 0.25, 0]
+heading_deg = 90
+[camera]
+width_px = 16
+height_px = 12
+pixel_pitch_um = 500
+[[rays]]
+name = \"down\"
+spinning = { elevations_deg = [-90], steps = 1 }
+position_m = [1, 0, 2]
+[[rays]]
+name = \"front\"
+grid = { columns = 24, rows = 16, width_deg = 60, height_deg = 40 }
+position_m = [0, 0, 1]
+pitch_down_deg = 20
+sides = \"fronts\"
+";
+
+fn folder(scene: &str) -> TempDir {
+    let folder = TempDir::new().expect("a temporary folder");
+    fs::write(folder.path().join("lidar.toml"), scene).expect("a file");
+    folder
+}
+
+#[test]
+fn validate_holds_the_tracer_to_the_exact_answers() {
+    let folder = folder(SCENE);
+    let shown = screen(folder.path(), &["validate", "lidar.toml", "-o", "out"], 0);
+    for line in [
+        "rays down: 1 ray, 1 hit; tracer: 1 same, 0 rounding, 0 wrong",
+        "rays front: 384 rays, ",
+        // 16 x 12 pixels, 1 ray and 24 x 16.
+        "All 577 rays agree.",
+    ] {
+        assert!(shown.contains(line), "{shown}");
+    }
+    let summary = fs::read_to_string(folder.path().join("out/summary.json")).expect("a summary");
+    let summary: Value = serde_json::from_str(&summary).expect("JSON");
+    let schema = include_str!("../../../../../../docs/formats/summary.schema.json");
+    let schema: Value = serde_json::from_str(schema).expect("JSON");
+    assert_eq!(schema_faults(&schema, &summary), Vec::<String>::new());
+    assert_eq!((&summary["compared"], &summary["ray_sets"][0]["hits"]), (&577.into(), &1.into()));
+    // The vehicle stands at (0.5, 0.25) and looks along y: one metre before it is (0.5, 1.25). The ground is z = 0 there, or
+    // a pyramid's side; the ray starts 2 m above the vehicle.
+    let read = |path: &str| read_npy_numbers(folder.path().join(path), &Limits::default()).expect("an array");
+    let (point, range) = (read("out/rays/down/point.npy"), read("out/rays/down/range.npy"));
+    let below = [0.5, 1.25, 2.0 - range.values[0]];
+    assert!(point.values.iter().zip(below).all(|(a, b)| (a - b).abs() < 1e-12), "{point:?}");
+    assert_eq!(read("out/rays/front/face.npy").shape, [16, 24]);
+    for file in ["summary.md", "junit.xml", "report.html"] {
+        let text = fs::read_to_string(folder.path().join("out").join(file)).expect("a file");
+        assert!(text.contains("384 rays") || text.contains("rays front"), "{file}");
+    }
+    assert!(folder.path().join("out/rays/front/cloud.ply").is_file());
+}
+
+#[test]
+fn without_the_tracer_the_sets_are_not_compared() {
+    let folder = folder(SCENE);
+    let shown =
+        screen(folder.path(), &["validate", "lidar.toml", "--with", "scanline,referee", "-o", "out"], 0);
+    assert!(shown.contains("not compared, only the tracer answers them"), "{shown}");
+    assert!(shown.contains("All 192 rays agree."), "{shown}");
+}
+
+#[test]
+fn render_writes_the_sets_of_a_renderer_that_answers_them() {
+    let folder = folder(SCENE);
+    let read =
+        |path: &str| read_npy_numbers(folder.path().join(path), &Limits::default()).expect("an array").values;
+    let shown = screen(folder.path(), &["render", "lidar.toml", "--with", "tracer", "-o", "traced"], 0);
+    assert!(shown.contains("traced/rays/front/summary.json"), "{shown}");
+    screen(folder.path(), &["render", "lidar.toml", "--with", "referee", "-o", "exact"], 0);
+    let [traced, exact] = ["traced", "exact"].map(|name| read(&format!("{name}/rays/front/t.npy")));
+    assert!(traced.iter().any(|t| t.is_finite()));
+    assert!(traced.iter().zip(&exact).all(|(a, b)| a == b || (a - b).abs() < 1e-12));
+    let shown = screen(folder.path(), &["render", "lidar.toml", "--with", "scanline", "-o", "drawn"], 0);
+    assert!(
+        shown.contains("scanline answers rays of cameras and beams only; not answered: 2 sets of rays"),
+        "{shown}"
+    );
+    assert!(!folder.path().join("drawn/rays").exists());
+}
+
+/// Makes the range and t of one ray of the set `front` longer by a thousandth.
+fn lengthen_a_ray(candidate: &std::path::Path) {
+    for name in ["t", "range"] {
+        let path = candidate.join(format!("rays/front/{name}.npy"));
+        let mut array = read_npy_numbers(&path, &Limits::default()).expect("an array");
+        let hit = array.values.iter_mut().find(|t| t.is_finite()).expect("a hit");
+        *hit *= 1.001;
+        write_npy_numbers(&path, &array.shape, &array.values).expect("a file");
+    }
+}
+
+#[test]
+fn a_pack_has_the_sets_and_a_check_rules_on_them() {
+    let folder = folder(SCENE);
+    let at = folder.path();
+    let shown = screen(at, &["pack", "lidar.toml", "--no-bench", "-o", "pack"], 0);
+    assert!(shown.contains("rays down: 1 ray; 1 hit, 0 of them at a tie, 0 miss"), "{shown}");
+    screen(at, &["render", "lidar.toml", "--with", "tracer", "-o", "traced"], 0);
+    let shown = screen(at, &["check", "pack", "traced"], 0);
+    assert!(shown.contains("rays front: 384 the same (0 at ties), 0 rounding, 0 wrong"), "{shown}");
+    // One wrong ray of a set fails the check, though all pixels agree.
+    lengthen_a_ray(&at.join("traced"));
+    let shown = screen(at, &["check", "pack", "traced", "-o", "checked"], 1);
+    assert!(shown.contains("192 rays agree") && shown.contains("rays front: 383 the same"), "{shown}");
+    let document: Value =
+        serde_json::from_str(&screen(at, &["--json", "check", "pack", "traced"], 1)).expect("JSON");
+    let schema: Value =
+        serde_json::from_str(include_str!("../../../../../../docs/formats/check.schema.json")).expect("JSON");
+    assert_eq!(schema_faults(&schema, &document), Vec::<String>::new());
+    assert_eq!(
+        (&document["ray_sets"][1]["name"], &document["ray_sets"][1]["passes"]),
+        (&"front".into(), &false.into())
+    );
+    assert_eq!(document["ray_sets"][0]["passes"], true);
+    let junit = fs::read_to_string(at.join("checked/junit.xml")).expect("a file");
+    assert!(junit.contains("rays front") && junit.contains("rays down"), "{junit}");
+    assert!(at.join("checked/rays/front/check.json").is_file());
+    // What is not given is told, and is no mistake.
+    fs::remove_dir_all(at.join("traced/rays/front")).expect("a folder");
+    let shown = screen(at, &["check", "pack", "traced"], 0);
+    assert!(shown.contains("rays front: not given"), "{shown}");
+    // A set that was changed is found, by its own list or by that of the pack.
+    let rays = at.join("pack/rays/front/rays.npy");
+    let mut bytes = fs::read(&rays).expect("a file");
+    *bytes.last_mut().expect("a byte") ^= 1;
+    fs::write(&rays, bytes).expect("a file");
+    screen(at, &["render", "lidar.toml", "--with", "tracer", "-o", "traced"], 0);
+    assert_trouble(&raypencil(at, &["check", "pack", "traced"]), &["pack/rays/front/rays.npy"]);
+    fs::remove_file(at.join("pack/rays/down/raypack.json")).expect("a file");
+    assert_trouble(&raypencil(at, &["check", "pack", "traced"]), &["rays/down/raypack.json"]);
+}
+
+#[test]
+fn diff_compares_the_sets_too() {
+    let folder = folder(SCENE);
+    let at = folder.path();
+    for name in ["a", "b"] {
+        screen(at, &["render", "lidar.toml", "--with", "tracer", "-o", name], 0);
+    }
+    let shown = screen(at, &["--json", "diff", "a", "b"], 0);
+    assert!(shown.contains("rays/front/point.X") && shown.contains("rays/down/face"), "{shown}");
+    lengthen_a_ray(&at.join("b"));
+    let shown = screen(at, &["diff", "a", "b", "-o", "difference"], 1);
+    assert!(shown.contains("rays/front/range") && shown.contains("rays/front/t "), "{shown}");
+    // The scene's sensors are ruled on; sets are compared all the same.
+    screen(at, &["diff", "a", "b", "--scene", "lidar.toml"], 1);
+    // Sets on one side only are named.
+    fs::remove_dir_all(at.join("b/rays")).expect("a folder");
+    let shown = screen(at, &["diff", "a", "b"], 1);
+    assert!(shown.contains("rays/down/face"), "{shown}");
+}
+
+#[test]
+fn a_wrong_set_is_an_error_with_its_place() {
+    let folder = folder(&format!("{SCENE}[[rays]]\nname = \"front\"\ngrid = {{ preset = \"l515\" }}\n"));
+    let output = raypencil(folder.path(), &["validate", "lidar.toml"]);
+    assert_trouble(&output, &["lidar.toml:21:8", "`rays 2.name` is \"front\", the name of another set"]);
+}
+
+#[test]
+fn patterns_become_packs_of_rays() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let cube = "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n";
+    fs::write(folder.path().join("floor.obj"), cube).expect("a file");
+    let set = |name: &str, sides: &str| {
+        format!(
+            "[[rays]]\nname = \"{name}\"\nspinning = {{ elevations_deg = [-90], steps = 1 }}\nposition_m = [1, 1, 2]\n\
+             roll_right_deg = 0\nsides = \"{sides}\"\n"
+        )
+    };
+    fs::write(folder.path().join("one.toml"), set("down", "both")).expect("a file");
+    fs::write(folder.path().join("two.toml"), set("a", "both") + &set("b", "fronts")).expect("a file");
+    let shown = screen(folder.path(), &["pack", "floor.obj", "--rays", "one.toml", "-o", "one"], 0);
+    assert!(shown.starts_with("one: the pack of 1 ray; 1 hit"), "{shown}");
+    let shown = screen(folder.path(), &["pack", "floor.obj", "--rays", "two.toml", "-o", "two"], 0);
+    assert!(
+        shown.contains("two/a: the pack of 1 ray; 1 hit") && shown.contains("two/b: the pack of 1 ray"),
+        "{shown}"
+    );
+    // What `cast` answers to the same pattern passes each of them.
+    screen(folder.path(), &["cast", "floor.obj", "one.toml", "-o", "answers"], 0);
+    for pack in ["one", "two/a"] {
+        screen(folder.path(), &["check", pack, "answers"], 0);
+    }
+    let sides = |pack: &str| {
+        let document: Value =
+            serde_json::from_slice(&fs::read(folder.path().join(pack).join("raypack.json")).expect("a pack"))
+                .expect("a document");
+        document["sides"].as_str().expect("sides").to_string()
+    };
+    assert_eq!(["one", "two/a", "two/b"].map(sides), ["both", "both", "fronts"]);
+    let shown =
+        screen(folder.path(), &["pack", "floor.obj", "--rays", "two.toml", "-o", "json", "--json"], 0);
+    let document: Value = serde_json::from_str(&shown).expect("a document");
+    assert_eq!(document["packs"][1]["pack"], "json/b");
+    let wrong = raypencil(folder.path(), &["pack", "floor.obj", "--rays", "none.toml", "-o", "none"]);
+    assert_trouble(&wrong, &["none.toml"]);
+}

@@ -1,0 +1,189 @@
+//! The reports of a campaign: the summary against its schema, and the screen.
+
+use raypencil_campaign::{
+    Campaign, Merged, PartName, PartRecord, QuantityRecord, TerrainRecord, WorstRecord, WrongRay,
+    campaign_json, campaign_screen, terrain, write_campaign,
+};
+use raypencil_judge::Quantity;
+use raypencil_tests::schema::schema_faults;
+use serde_json::Value;
+
+/// A wrong ray.
+fn wrong_ray() -> WrongRay {
+    WrongRay { sensor: "beam-0".into(), i: 3, j: 1, quantity: Quantity::Range, what: "1 m and 2 m".into() }
+}
+
+/// A campaign of two terrains with made-up numbers.
+fn made_up(by_class: [u64; 6], wrong: Vec<WrongRay>) -> Merged {
+    with_hits(500, by_class, wrong)
+}
+
+/// The same, with this many hits in each scene.
+fn with_hits(hits: u64, by_class: [u64; 6], wrong: Vec<WrongRay>) -> Merged {
+    let worst = |value: f64, i| Some(WorstRecord { value: Some(value), sensor: "camera".into(), i, j: 2 });
+    let part = |part: PartName, i| PartRecord {
+        part,
+        compared: by_class.iter().sum(),
+        hits,
+        by_class,
+        not_compared: 0,
+        judged: 12,
+        quantities: vec![QuantityRecord {
+            quantity: Quantity::Range,
+            by_class,
+            not_compared: 0,
+            worst_error: worst(f64::from(i) * 1e-9, i),
+            worst_ratio: worst(f64::from(i) / 16.0, i),
+        }],
+        wrong: wrong.clone(),
+        candidate: None,
+        failed: None,
+    };
+    let record = |terrain: u64| TerrainRecord {
+        terrain,
+        faces: 1000 + terrain,
+        parts: PartName::ALL.into_iter().zip(1..).map(|(name, i)| part(name, i)).collect(),
+    };
+    let campaign = Campaign { version: "1.2.3".into(), ..Campaign::new(5, 2) };
+    Merged { campaign, terrains: vec![record(0), record(1)] }
+}
+
+#[test]
+fn screens_are_as_the_snapshots_show() {
+    insta::assert_snapshot!(
+        "screen_without_defects",
+        campaign_screen(&made_up([990, 6, 4, 0, 0, 0], Vec::new()))
+    );
+    let with_defects = made_up([990, 6, 2, 0, 1, 1], vec![wrong_ray()]);
+    insta::assert_snapshot!("screen_with_defects", campaign_screen(&with_defects));
+}
+
+#[test]
+fn counts_add_up_over_terrains_and_scenes() {
+    // Two terrains of four scenes of 1000 rays.
+    let merged = made_up([990, 6, 2, 0, 1, 1], vec![wrong_ray()]);
+    assert_eq!((merged.compared(), merged.passes()), (2 * 4 * 1000, false));
+    assert!(made_up([1000, 0, 0, 0, 0, 0], Vec::new()).passes());
+    assert!(!made_up([0; 6], Vec::new()).passes());
+}
+
+#[test]
+fn a_campaign_in_which_nothing_is_hit_is_no_pass() {
+    let classes = [1000, 0, 0, 0, 0, 0];
+    let of = |hits| with_hits(hits, classes, Vec::new());
+    let codes =
+        |merged: &Merged| merged.warnings().iter().map(|(_, found)| found.code.word()).collect::<Vec<_>>();
+    // Four scenes, each of two terrains of 1000 rays: 20 hits are one per cent.
+    assert!(of(10).passes() && codes(&of(10)).is_empty());
+    assert!(of(9).passes());
+    assert_eq!(codes(&of(9)), ["few_hits"; 4]);
+    let nothing = of(0);
+    assert!(!nothing.passes());
+    assert_eq!(codes(&nothing), ["no_hits"; 4]);
+    let screen = campaign_screen(&nothing);
+    assert!(screen.ends_with("? Nothing is hit: all 8,000 rays miss the terrain.\n"), "{screen}");
+    assert!(
+        screen.contains("warning: scenes `own`: none of its 2,000 rays hits") && !screen.contains('✓'),
+        "{screen}"
+    );
+    let summary: Value = serde_json::from_str(&campaign_json(&nothing)).unwrap();
+    assert_eq!(
+        (&summary["verdict"], &summary["warnings"][3]["part"]),
+        (&"nothing_hit".into(), &"lattice".into())
+    );
+    let schema = include_str!("../../../../../docs/formats/campaign.schema.json");
+    assert_eq!(schema_faults(&serde_json::from_str(schema).unwrap(), &summary), [""; 0]);
+}
+
+#[test]
+fn the_summary_keeps_to_its_schema() {
+    let campaign = Campaign::new(5, 1);
+    let mut record = terrain(&campaign, 0, None).unwrap();
+    // The scenes of a campaign do hit their terrain.
+    assert!(record.parts.iter().all(|part| 0 < part.hits && part.hits <= part.compared), "{record:?}");
+    record.parts[0].wrong.push(wrong_ray());
+    let merged = Merged { campaign, terrains: vec![record] };
+    let schema: Value =
+        serde_json::from_str(include_str!("../../../../../docs/formats/campaign.schema.json")).unwrap();
+    let mut summary: Value = serde_json::from_str(&campaign_json(&merged)).unwrap();
+    assert_eq!(schema_faults(&schema, &summary), [""; 0]);
+    // The schema finds a missing key and a surplus one.
+    let total = summary["parts"]["own"].as_object_mut().unwrap();
+    total.remove("judged");
+    total.insert("surplus".into(), Value::Null);
+    assert_eq!(schema_faults(&schema, &summary).len(), 2);
+}
+
+/// The page of a campaign that was written into a folder with these files in its folder `wrong`.
+fn page(merged: &Merged, wrong: &[&str]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("wrong")).unwrap();
+    wrong.iter().for_each(|name| std::fs::write(folder.path().join("wrong").join(name), "").unwrap());
+    write_campaign(merged, folder.path()).unwrap();
+    assert!(folder.path().join("summary.json").exists());
+    std::fs::read_to_string(folder.path().join("report.html")).unwrap()
+}
+
+#[test]
+fn the_page_counts_lists_and_links() {
+    let mut merged = made_up([990, 6, 2, 0, 1, 1], vec![wrong_ray()]);
+    merged.terrains[1].parts[2].by_class = [980, 6, 12, 0, 1, 1];
+    let page = page(&merged, &["terrain-000000-own.toml", "terrain-000000-own-smallest.md"]);
+    // Eight scenes of 1000 rays, with a defect and an undecided one each.
+    assert!(page.contains("16 of 8,000 rays are wrong or undecided"), "{page}");
+    // Terrain 1 has ten rays more of class `rounding`: it is the harder one, and its scene `aimed` is to be seen again.
+    let at = |words: &str| page.find(words).unwrap_or_else(|| panic!("{words} is not in {page}"));
+    let [one, zero] =
+        [1, 0].map(|terrain| at(&format!("<tr class=\"fails\"><th scope=\"row\">{terrain}</th>")));
+    assert!(one < zero);
+    at("raypencil campaign replay --seed 5 --terrain 1 --part aimed -o DIR</code>");
+    // Links lead to files that are there, and to no others.
+    at("<a href=\"wrong/terrain-000000-own-smallest.md\">smallest scene</a>");
+    at("<a href=\"wrong/terrain-000000-own.toml\">whole scene</a>");
+    assert_eq!(page.matches("<a href").count(), 2);
+    at("beam-0 3,1</b>, range: 1 m and 2 m");
+    at("raypencil probe DIR/scene.toml --beam 0 --pencil 3,1");
+}
+
+#[test]
+fn a_page_without_defects_or_hits_says_so() {
+    let fine = page(&made_up([990, 6, 4, 0, 0, 0], Vec::new()), &[]);
+    assert!(
+        fine.contains("8,000 rays, no defect, none undecided") && fine.contains("<p>None.</p>"),
+        "{fine}"
+    );
+    let nothing = page(&with_hits(0, [1000, 0, 0, 0, 0, 0], Vec::new()), &[]);
+    assert!(nothing.contains("Nothing is hit: all 8,000 rays miss the terrain"), "{nothing}");
+    assert!(nothing.contains("Warning: scenes own: none of its 2,000 rays hits"), "{nothing}");
+}
+
+#[test]
+fn the_page_of_a_hunt_says_what_is_hunted_and_what_failed() {
+    let mut merged = made_up([990, 6, 4, 0, 0, 0], Vec::new());
+    merged.campaign = merged.campaign.hunting("my <tracer> {pack} {out}").unwrap();
+    assert!(merged.passes());
+    let fine = page(&merged, &[]);
+    assert!(
+        fine.contains("Every answer of the program under test was compared with the exact one"),
+        "{fine}"
+    );
+    assert!(fine.contains("my &#60;tracer&#62; {pack} {out}") && !fine.contains("<tracer>"), "{fine}");
+    assert!(fine.contains("--candidate-command &#39;my") && !fine.contains("<h2>No answer</h2>"), "{fine}");
+    merged.terrains[1].parts[0].failed = Some("it ended with exit status: 3".into());
+    assert!(!merged.passes());
+    assert_eq!(merged.failures().collect::<Vec<_>>(), [(1, PartName::Own, "it ended with exit status: 3")]);
+    let failed = page(&merged, &[]);
+    assert!(
+        failed.contains("gave no answer for some scenes") && !failed.contains("Nothing is hit"),
+        "{failed}"
+    );
+    assert!(failed.contains("terrain 1 own: it ended with exit status: 3"), "{failed}");
+    let screen = campaign_screen(&merged);
+    assert!(
+        screen.contains("under test: my <tracer>") && screen.contains("1 scenes have no answer"),
+        "{screen}"
+    );
+    let json: Value = serde_json::from_str(&campaign_json(&merged)).unwrap();
+    assert_eq!(json["no_answer"][0]["terrain"], 1);
+    assert_eq!(json["verdict"], "defects");
+}

@@ -1,0 +1,77 @@
+use raypencil_mesh_io::read_dem;
+use raypencil_scene::Silent;
+use raypencil_tests::schema::{assert_keys_are_closed, schema_faults};
+
+use super::*;
+use crate::common::{FLAT, LOW_SUN, SHORT, driven, filtered, job};
+use crate::screen::drive_screen;
+
+/// Times vary from run to run; versions and pictures have their own tests.
+const FILTERS: [(&str, &str); 5] = [
+    (r"(?s)<style>.*?</style>", "[style]"),
+    (r"(?s)<svg.*?</svg>", "[figure]"),
+    (r"data:image/png;base64,[^\x22]*", "[animation]"),
+    (r" *\b\d+(\.\d+)? (µs|ms|s)\b", " [time]"),
+    (r"raypencil \d+\.\d+\.\d+", "raypencil [version]"),
+];
+
+#[test]
+fn screens_and_pages_tell_facts_warnings_times_and_differences() {
+    // With two renderers, and with one under a sun that the default threshold does not take into account.
+    let sunny = format!("{SHORT}\n{LOW_SUN}");
+    let cases = [
+        ("two_renderers", job(FLAT, SHORT), &["scanline", "tracer"][..]),
+        ("one_renderer", filtered(&sunny), &["tracer"]),
+    ];
+    for (name, job, renderers) in cases {
+        let run = driven(&job, renderers);
+        let page = html(&job, &run, &figures(&job, &run), b"").unwrap();
+        insta::with_settings!({ filters => FILTERS }, {
+            insta::assert_snapshot!(format!("screen_{name}"), drive_screen(&job, &run, Some(Path::new("out"))));
+            insta::assert_snapshot!(format!("page_{name}"), raypencil_explorer::without_explorer(&page));
+        });
+    }
+}
+
+#[test]
+fn the_folder_holds_everything_and_the_summary_comes_last() {
+    let job = job(FLAT, SHORT);
+    let run = driven(&job, &["scanline", "tracer"]);
+    let folder = tempfile::tempdir().unwrap();
+    let written = write_drive(&job, &run, folder.path(), &Silent).unwrap();
+    let names: Vec<_> =
+        written.files.iter().map(|file| file.file_name().unwrap().to_string_lossy().into_owned()).collect();
+    assert_eq!(names.last().map(String::as_str), Some("summary.json"));
+    for file in &written.files {
+        assert!(file.is_file(), "{}", file.display());
+    }
+    // There are no other files, such as partly written ones.
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), names.len());
+    let page = std::fs::read_to_string(&written.report).unwrap();
+    // Four figures, and the plan of the start.
+    assert_eq!(page.matches("<svg").count(), 5);
+    assert!(!page.contains("src=\"http") && !page.contains("href=\"http"));
+    // The map can be read as an elevation model with the same posts.
+    let dem = read_dem(folder.path().join("local-map.tif"), None).unwrap();
+    let posts = height_grid(&run.map);
+    assert_eq!((dem.posts.columns, dem.posts.rows), (201, 201));
+    assert!(dem.posts.heights.iter().zip(&posts.heights).all(|(a, b)| a.to_bits() == b.to_bits()));
+    assert!((dem.posts.corner - posts.corner).length() < 1e-9);
+    // The animation has one picture per frame.
+    let bytes = std::fs::read(folder.path().join("drive.png")).unwrap();
+    let reader = png::Decoder::new(io::Cursor::new(bytes)).read_info().unwrap();
+    assert_eq!(reader.info().animation_control().map(|control| control.num_frames), Some(7));
+}
+
+#[test]
+fn the_summary_keeps_to_its_schema() {
+    let schema: serde_json::Value =
+        serde_json::from_str(include_str!("../../../../../docs/formats/drive.schema.json")).unwrap();
+    assert_keys_are_closed(&schema);
+    let sunny = format!("{SHORT}\n{LOW_SUN}\nsubtract_unlit = true");
+    for (drive, names) in [(SHORT, &["tracer"][..]), (sunny.as_str(), &["scanline", "tracer"])] {
+        let job = job(FLAT, drive);
+        let summary = serde_json::from_str(&drive_json(&job, &driven(&job, names))).unwrap();
+        assert_eq!(schema_faults(&schema, &summary), Vec::<String>::new());
+    }
+}

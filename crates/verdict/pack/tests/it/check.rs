@@ -1,0 +1,273 @@
+//! Checks of candidates: reports for people and programs, and recordings with few channels.
+
+use std::path::{Path, PathBuf};
+
+use raypencil_files::{Limits, Values, read_npy, write_npy};
+use raypencil_judge::{Class, GroundTruth, ListedDefect, Quantity, Recorded, check};
+use raypencil_pack::{
+    Checked, FileRole, Manifest, PackKind, check_json, check_pack, check_page, check_screen, write_check,
+    write_questions,
+};
+use raypencil_scanline::Scanline;
+use raypencil_scene::{Precision, Renderer, Request, Silent};
+use raypencil_scene_io::{Overrides, Subject, load};
+use raypencil_tests::schema::{assert_keys_are_closed, schema_faults};
+use raypencil_tracer::Tracer;
+use serde_json::Value;
+
+const SCHEMA: &str = include_str!("../../../../../docs/formats/check.schema.json");
+
+fn pack() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../data/packs/pyramids")
+}
+
+/// The pack checked against itself.
+fn perfect() -> Checked {
+    check_pack(&pack(), &pack(), Some(Precision::F64), &Silent).expect("a pack as it was written")
+}
+
+/// A candidate with the faces and ranges of the camera only. One range is wrong by 1 m.
+fn partial() -> Checked {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let candidate = folder.path().join("mine");
+    std::fs::create_dir_all(candidate.join("camera")).expect("a folder");
+    std::fs::copy(pack().join("camera/face.I.npy"), candidate.join("camera/face.I.npy")).expect("a file");
+    let array = read_npy(pack().join("camera/range.T.npy"), &Limits::default()).expect("an array");
+    let [Values::Reals(ranges)] = array.planes.as_slice() else { panic!("one plane of reals") };
+    let mut ranges = ranges.clone();
+    let hit = ranges.cells().iter().position(|range| range.is_finite()).expect("a hit");
+    ranges.cells_mut()[hit] += 1.0;
+    write_npy(candidate.join("camera/range.T.npy"), &[&ranges]).expect("a file");
+    check_pack(&pack(), &candidate, None, &Silent).expect("a candidate that keeps to the conventions")
+}
+
+/// Compares a report with its snapshot. Version and paths are left out.
+fn assert_report(name: &str, text: &str) {
+    let text = text.replace(&pack().display().to_string(), "PACK");
+    insta::with_settings!({ filters => vec![(r"raypencil \d+\.\d+\.\d+", "raypencil [version]")] }, {
+        insta::assert_snapshot!(name, text);
+    });
+}
+
+#[test]
+fn screens_are_as_the_snapshots_show() {
+    assert_report("screen_of_a_perfect_candidate", &check_screen(&perfect()));
+    assert_report("screen_of_a_partial_candidate", &check_screen(&partial()));
+}
+
+#[test]
+fn junit_is_as_the_snapshot_shows() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let [_, junit, _] =
+        write_check(&partial(), folder.path()).expect("a writable folder").try_into().unwrap();
+    assert_report("junit_of_a_partial_candidate", &std::fs::read_to_string(junit).unwrap());
+}
+
+/// A candidate with three faults in the camera: an early range 1 um too long, a late one 2 m too long, and a pixel of
+/// the middle that misses.
+fn three_faults() -> Checked {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let candidate = folder.path().join("mine");
+    std::fs::create_dir_all(candidate.join("camera")).expect("a folder");
+    let reals = |name: &str| {
+        let array =
+            read_npy(pack().join(format!("camera/{name}.npy")), &Limits::default()).expect("an array");
+        let [Values::Reals(image)] = array.planes.as_slice() else { panic!("one plane of reals") };
+        image.clone()
+    };
+    let mut ranges = reals("range.T");
+    let hits: Vec<usize> = (0..ranges.cells().len()).filter(|&at| ranges.cells()[at].is_finite()).collect();
+    ranges.cells_mut()[hits[0]] += 1e-6;
+    ranges.cells_mut()[hits[hits.len() / 2]] = f64::INFINITY;
+    ranges.cells_mut()[hits[hits.len() - 1]] += 2.0;
+    write_npy(candidate.join("camera/range.T.npy"), &[&ranges]).expect("a file");
+    check_pack(&pack(), &candidate, None, &Silent).expect("a candidate that keeps to the conventions")
+}
+
+#[test]
+fn the_worst_defects_are_listed_hits_before_values() {
+    let checked = three_faults();
+    let listed = &checked.check.sensors[0].listed;
+    let found: Vec<Quantity> = listed.iter().map(|one| one.item.quantity).collect();
+    // In reading order the smallest fault would be the first.
+    assert_eq!(found, [Quantity::Hit, Quantity::Range, Quantity::Range]);
+    assert_eq!(checked.check.sensors[0].defects[0].place, listed[2].place);
+    assert_eq!((listed[0].said[0].1.as_str(), listed[0].difference), ("no hit", None));
+    assert!(listed[0].truth.starts_with("face "), "{}", listed[0].truth);
+    let off = |k: usize| listed[k].difference.expect("two numbers");
+    assert!((off(1) - 2.0).abs() < 1e-9 && (off(2) - 1e-6).abs() < 1e-12, "{listed:?}");
+    assert!(listed[1].ratio > listed[2].ratio && listed[2].ratio > Some(1.0));
+    // The margin is that of the pack, which was computed apart, rounded down to single precision.
+    let array = read_npy(pack().join("camera/margin.face.npy"), &Limits::default()).expect("an array");
+    for one in &listed[1..] {
+        let index = one.place.i as usize + one.place.j as usize * 96;
+        let margin = one.margin.as_ref().expect("a ray has one");
+        assert_eq!((margin.of, margin.unit), ("face", "cells"));
+        let of_pack = array.planes[0].real(index);
+        assert!(margin.lo >= of_pack && margin.lo <= of_pack * (1.0 + 1e-6), "{margin:?} {of_pack}");
+    }
+    let screen = check_screen(&checked);
+    assert!(screen.contains("hit/miss: mine says no hit; true is face"), "{screen}");
+}
+
+#[test]
+fn the_page_has_verdict_quantities_defects_and_pictures() {
+    let page = raypencil_explorer::without_explorer(&check_page(&three_faults()).expect("a page"));
+    assert!(page.contains("<span aria-hidden=\"true\">✗</span> 3 of 6,912 rays are wrong"), "{page}");
+    assert!(page.contains("mine says no hit; true is face"), "the worst defect is told");
+    assert_eq!(page.matches("<li>").count(), 3);
+    // The camera has three pictures; the six beams, which are not given, the exact one.
+    assert_eq!(page.matches("src=\"data:image/png;base64,").count(), 9);
+    assert!(
+        page.contains("mine minus exact") && page.contains("Colours span ±2.00 m, the largest difference")
+    );
+    assert!(page.contains("hit on one side only"));
+    assert_eq!(page.matches("range: not given").count(), 6);
+    let row = page.lines().find(|line| line.contains("<th scope=\"row\">depth</th>")).expect("a row");
+    assert!(row.contains("not given") && !row.contains("<td>0</td>"), "{row}");
+    for outside in ["http:", "https:", "<script", "<link", "url("] {
+        assert!(!page.contains(outside), "{outside}");
+    }
+    let perfect = check_page(&perfect()).expect("a page");
+    assert!(perfect.contains("✓") && perfect.contains("<p>None.</p>"));
+    assert!(perfect.contains("ranges are equal to the last bit"));
+}
+
+#[test]
+fn the_json_keeps_to_its_schema() {
+    let schema: Value = serde_json::from_str(SCHEMA).unwrap();
+    assert_keys_are_closed(&schema);
+    let mut checked = perfect();
+    let clean: Value = serde_json::from_str(&check_json(&checked)).unwrap();
+    assert_eq!(schema_faults(&schema, &clean), Vec::<String>::new());
+    assert_eq!(clean["verdict"], "agrees");
+    // A report with a defect and an unknown channel.
+    checked.check.sensors[0].by_class[Class::Defect as usize] = 1;
+    checked.recorded.unknown.push("camera/mine".into());
+    let largest = checked.check.sensors[0]
+        .items
+        .get(Quantity::Range.into())
+        .unwrap()
+        .worst_ulps
+        .clone()
+        .expect("compared");
+    checked.check.sensors[0].listed.push(ListedDefect {
+        place: largest.place,
+        item: Quantity::Range.into(),
+        said: vec![("mine".into(), "4 m".into())],
+        truth: String::new(),
+        difference: Some(f64::INFINITY),
+        difference_unit: "m",
+        ratio: None,
+        margin: None,
+        what: "off".into(),
+    });
+    let wrong: Value = serde_json::from_str(&check_json(&checked)).unwrap();
+    assert_eq!(schema_faults(&schema, &wrong), Vec::<String>::new());
+    assert_eq!(wrong["verdict"], "defects");
+    let faulty: Value = serde_json::from_str(&check_json(&three_faults())).unwrap();
+    assert_eq!(schema_faults(&schema, &faulty), Vec::<String>::new());
+    let depth = &faulty["sensors"][0]["quantities"][3];
+    assert_eq!((&depth["quantity"], &depth["not_given"]), (&"depth".into(), &"not given".into()));
+}
+
+#[test]
+fn classes_add_up_and_a_perfect_candidate_has_no_error() {
+    let Checked { check, .. } = perfect();
+    assert!(check.passes());
+    for sensor in &check.sensors {
+        assert_eq!(sensor.compared(), sensor.by_class[Class::Agree as usize]);
+        for (item, tally) in sensor.items.iter() {
+            assert!(tally.compared() <= sensor.compared(), "{item:?}");
+            assert!(tally.others.is_empty(), "{item:?}");
+            assert!(
+                tally.worst_error.as_ref().is_none_or(|largest| largest.value == 0.0),
+                "{item:?}: {tally:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn outputs_in_memory_are_judged_in_double_precision() {
+    let scene = load(&pack().join("scene.toml").to_string_lossy(), &Overrides::default())
+        .expect("the pack's scene")
+        .scene;
+    let truth = GroundTruth::certified(&scene, &Silent);
+    let renderers: [&dyn Renderer; 2] = [&Scanline::default(), &Tracer::new()];
+    for renderer in renderers {
+        let output = renderer.render(&scene, &Request::EVERYTHING);
+        let mut recorded = Recorded::of_output(renderer.name(), &scene, &output, Precision::F64);
+        let found = check(&truth, &recorded, &Silent);
+        assert!(found.passes());
+        let totals = found.totals();
+        let ratio = |quantity: Quantity| {
+            let items = totals.iter().filter(|(item, _)| item.quantity == quantity);
+            items
+                .filter_map(|(_, tally)| tally.worst_ratio.as_ref())
+                .fold(0.0, |largest: f64, one| largest.max(one.value))
+        };
+        for quantity in Quantity::ALL {
+            // The derived bounds leave room.
+            assert!(ratio(quantity) < 0.5, "{}: {quantity} {}", renderer.name(), ratio(quantity));
+        }
+        // Without faces the values are judged, and without the pencils' pixels the images.
+        for map in &mut recorded.answers.maps {
+            map.face = None;
+        }
+        for light in &mut recorded.answers.light {
+            light.returns.pixel = None;
+            light.returns.visible = None;
+        }
+        recorded.storage.retain(|(_, item), _| {
+            !matches!(item.quantity, Quantity::Face | Quantity::Pixel | Quantity::Visible)
+        });
+        let found = check(&truth, &recorded, &Silent);
+        assert!(
+            found.passes(),
+            "{}: {:?}",
+            renderer.name(),
+            found.sensors.iter().find_map(|s| s.defects.first())
+        );
+        // An image that lacks a quarter of one pixel's flux is wrong nevertheless.
+        let image = recorded.answers.light[0].image.as_mut().unwrap();
+        let at = image.cells().iter().position(|flux| *flux > 0.0).unwrap();
+        image.cells_mut()[at] *= 0.75;
+        assert!(!check(&truth, &recorded, &Silent).passes());
+    }
+}
+
+#[test]
+fn a_pack_of_questions_is_checked_by_its_scene() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let questions = folder.path().join("questions");
+    let loaded = load(&pack().join("scene.toml").to_string_lossy(), &Overrides::default()).expect("a scene");
+    let subject = Subject {
+        vehicle: None,
+        name: loaded.name,
+        arguments: String::new(),
+        sha256: loaded.source_sha256,
+        scene: loaded.scene,
+        file_facts: Default::default(),
+    };
+    let manifest = write_questions(&subject, &questions, &Silent).expect("a writable folder");
+    assert_eq!((manifest.kind, manifest.blind_seed), (PackKind::Questions, None));
+    // Scene, terrain, and the rays of each sensor: no answers.
+    assert_eq!(manifest.files.len(), 2 + subject.scene.sensors().count());
+    assert!(manifest.files.iter().all(|file| file.role != FileRole::Answers));
+    assert_eq!(Manifest::read_verified(&questions).expect("its manifest"), manifest);
+    // The answers of the whole pack are right for its questions; one range that is wrong is found.
+    let right = check_pack(&questions, &pack(), None, &Silent).expect("a candidate");
+    assert!(right.passes());
+    assert_eq!(right.check.compared(), perfect().check.compared());
+    let wrong = folder.path().join("wrong/camera");
+    std::fs::create_dir_all(&wrong).expect("a folder");
+    let array = read_npy(pack().join("camera/range.T.npy"), &Limits::default()).expect("an array");
+    let [Values::Reals(ranges)] = array.planes.as_slice() else { panic!("one plane of reals") };
+    let mut ranges = ranges.clone();
+    let hit = ranges.cells().iter().position(|range| range.is_finite()).expect("a hit");
+    ranges.cells_mut()[hit] += 1.0;
+    write_npy(wrong.join("range.T.npy"), &[&ranges]).expect("a file");
+    let found = check_pack(&questions, &folder.path().join("wrong"), None, &Silent).expect("a candidate");
+    assert_eq!(found.check.of(Class::Defect), 1);
+}

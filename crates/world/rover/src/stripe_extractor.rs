@@ -1,0 +1,95 @@
+//! Stripe extraction as an exchangeable part of the rover: one's own algorithm in place of [`Extraction`].
+
+use std::fmt::Debug;
+
+use raypencil_scene::{Image, SceneError};
+
+use crate::stripe::{EdgePoint, Extraction};
+
+/// Identity of an exposure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Exposure {
+    /// Index of the frame.
+    pub frame: u64,
+    /// Index of the sweep position in a vertical scan; otherwise `None`.
+    pub step: Option<u32>,
+    /// Index of the lit beam. `None`: all beams.
+    pub beam: Option<usize>,
+}
+
+/// Image that the camera passes to the stripe extraction.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CameraImage {
+    /// Flux per pixel, watts: the camera has no steps 6 to 8.
+    Flux(Image<f64>),
+    /// Digital numbers. They may be negative after subtraction of an unlit image.
+    Numbers(Image<i32>),
+}
+
+/// Edge of a beam's stripe.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BeamEdge {
+    /// Index of the beam.
+    pub beam: usize,
+    /// Edge in the image.
+    pub edge: EdgePoint,
+}
+
+/// Stripes found in one exposure.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Stripes {
+    /// Edges, in the order in which their points enter the map. [`Extraction`] gives them beam by beam, each in row-major
+    /// order of the image.
+    pub edges: Vec<BeamEdge>,
+    /// Number of image columns that were left out, because their light could not be told apart by beam.
+    pub columns_left_out: usize,
+}
+
+/// Extraction of stripes from the camera's images: the first part of step 9. [`Extraction`] is the rover's own;
+/// [`crate::Drive::with_extractor`] takes any other.
+///
+/// The row of an edge is in pixels from the image's upper border. The plan's [`crate::StripeLocation`] says what it is the
+/// row of: with `Centroid`, the middle plane of the light sheet, otherwise its lower edge plane. Each edge is
+/// triangulated with the plane of its beam.
+///
+/// `crates/doors/raypencil/examples/own_stripes.rs` swaps in an extractor of its own.
+pub trait StripeExtractor: Debug + Send + Sync {
+    /// Stripes in an image. If `exposure.beam` is some beam, only that one was lit.
+    ///
+    /// # Errors
+    /// A reason why there is no answer, which ends the drive.
+    fn stripes(&self, exposure: Exposure, image: &CameraImage) -> Result<Stripes, SceneError>;
+}
+
+/// The rover's own extraction, for a rig with this number of beams.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct OwnExtraction {
+    pub extraction: Extraction,
+    pub beams: usize,
+}
+
+impl StripeExtractor for OwnExtraction {
+    fn stripes(&self, exposure: Exposure, image: &CameraImage) -> Result<Stripes, SceneError> {
+        let Self { extraction, beams } = self;
+        let (by_beam, columns_left_out) = match (exposure.beam, image) {
+            (Some(beam), image) => {
+                let edges = match image {
+                    CameraImage::Flux(image) => extraction.edges(image),
+                    CameraImage::Numbers(image) => extraction.edges(image),
+                };
+                (vec![(beam, edges)], 0)
+            }
+            (None, image) => {
+                let (edges, left_out) = match image {
+                    CameraImage::Flux(image) => extraction.edges_by_order(image, *beams),
+                    CameraImage::Numbers(image) => extraction.edges_by_order(image, *beams),
+                };
+                (edges.into_iter().enumerate().collect(), left_out)
+            }
+        };
+        let of_beam = |(beam, edges): (usize, Vec<EdgePoint>)| {
+            edges.into_iter().map(move |edge| BeamEdge { beam, edge })
+        };
+        Ok(Stripes { edges: by_beam.into_iter().flat_map(of_beam).collect(), columns_left_out })
+    }
+}
