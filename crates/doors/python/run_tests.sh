@@ -5,7 +5,7 @@
 #
 # PYTHON names the interpreter (python3). The environment and what cargo builds go to CARGO_TARGET_DIR (target).
 set -euo pipefail
-cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+cd "$(dirname "${BASH_SOURCE[0]}")/../../.."
 
 python=${PYTHON:-python3}
 if ! command -v "$python" >/dev/null; then

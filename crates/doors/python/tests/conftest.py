@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 import raypencil
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 DATA = ROOT / "data"
 
 #: A small camera and two small beams on the pyramids.

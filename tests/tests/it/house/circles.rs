@@ -10,7 +10,7 @@ use proc_macro2::{TokenStream, TokenTree};
 use quote::ToTokens;
 use syn::{Item, UseTree, Visibility};
 
-use super::source::{crates, is_for_tests, sources};
+use super::source::{crates, is_for_tests, root, sources};
 
 /// A module's path below the crate, `compare::ray` as `["compare", "ray"]`; also the path of an item.
 type Path = Vec<String>;
@@ -305,4 +305,65 @@ fn circles_are_recognised() {
     ] {
         assert_eq!(house(&[lib, ("a.rs", a), ("b.rs", b)]), Vec::<Vec<String>>::new(), "{a} | {b}");
     }
+}
+
+/// The modules that a module of the Python package imports, wherever in it and for whatever reason.
+fn imports_of_python(text: &str) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    for line in text.lines().map(str::trim_start) {
+        let Some(rest) = line.strip_prefix("from .") else { continue };
+        let Some((module, names)) = rest.split_once("import ") else { continue };
+        match module.trim() {
+            "" => found.extend(names.split(',').map(|name| name.trim().to_string())),
+            module => {
+                found.insert(module.to_string());
+            }
+        }
+    }
+    found
+}
+
+/// Modules that import one another, in one step or several.
+fn circles_of_python(modules: &BTreeMap<String, BTreeSet<String>>) -> Vec<String> {
+    let reaches_itself = |name: &String| {
+        let (mut seen, mut due) = (BTreeSet::new(), vec![name]);
+        while let Some(module) = due.pop() {
+            for other in modules.get(module).into_iter().flatten() {
+                if other == name {
+                    return true;
+                }
+                if seen.insert(other) {
+                    due.push(other);
+                }
+            }
+        }
+        false
+    };
+    modules.keys().filter(|name| reaches_itself(name)).cloned().collect()
+}
+
+#[test]
+fn no_modules_of_python_import_one_another_in_a_circle() {
+    let folder = root().join(&crates()["python"]).join("python/raypencil");
+    let mut modules = BTreeMap::new();
+    for entry in std::fs::read_dir(folder).expect("the package") {
+        let path = entry.expect("an entry").path();
+        // `__init__` imports all of them, and none imports it.
+        if path.extension().is_some_and(|ending| ending == "py") && !path.ends_with("__init__.py") {
+            let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+            let text = std::fs::read_to_string(&path).expect("a module");
+            modules.insert(name, imports_of_python(&text));
+        }
+    }
+    assert!(modules.values().map(BTreeSet::len).sum::<usize>() > 30, "the imports are not seen");
+    assert_eq!(circles_of_python(&modules), Vec::<String>::new());
+    // Also for types alone, and inside a function.
+    let module = |text: &str| imports_of_python(text);
+    let circle = [
+        ("a".to_string(), module("if TYPE_CHECKING:\n    from .b import B\n")),
+        ("b".to_string(), module("def f() -> None:\n    from . import c, os\n")),
+        ("c".to_string(), module("from .a import A\n")),
+        ("d".to_string(), module("from .a import A\n")),
+    ];
+    assert_eq!(circles_of_python(&circle.into()), ["a", "b", "c"]);
 }

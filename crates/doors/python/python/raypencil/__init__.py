@@ -10,7 +10,8 @@ from ._cast import AllHits, CastResult, cast
 from ._drive import Drive, ElevationMap, Frame, Sectors, Vectors, drive
 from ._errors import RaypencilError, RaypencilFileError, RaypencilFileNotFoundError, RaypencilWarning
 from ._judge import Judgement, judge
-from ._mesh import Mesh, load, load_mesh
+from ._load import load
+from ._mesh import Mesh, load_mesh
 from ._packs import CheckResult, check, pack, pack_rays, read
 from ._raypencil import __version__
 from ._render import RenderResult, render

@@ -1,9 +1,9 @@
-"""Meshes, and what a path stands for."""
+"""Meshes."""
 
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,13 +12,8 @@ from . import _arrays, _raypencil
 from ._errors import RaypencilError
 from ._progress import Progress, stages
 
-if TYPE_CHECKING:
-    from ._scene import Scene
-
 #: The built-in grounds.
 BUILTIN_NAMES = ("pyramids", "facets")
-
-_SCENE_ENDINGS = (".toml", ".tif", ".tiff")
 
 
 class Mesh:
@@ -110,18 +105,3 @@ def load_mesh(path: str | os.PathLike[str], *, progress: Progress = False) -> Me
     """
     with stages(progress) as on_stage:
         return Mesh._of(_raypencil.load_mesh(os.fspath(path), on_stage))
-
-
-def load(source: str | os.PathLike[str], *, progress: Progress = False) -> Mesh | Scene:
-    """Loads what a path or a name stands for.
-
-    A built-in name (``pyramids``, ``facets``), a scene file (``.toml``) and an elevation model (``.tif``) are a
-    :class:`Scene`. Everything else is a :class:`Mesh`: ``.glb``, ``.gltf``, ``.stl``, ``.obj``, ``.ply``, or a folder with
-    ``vertices.npy`` and ``faces.npy``. For a scene with the default rig on a ``.glb``, write ``Scene("ground.glb")``.
-    """
-    from ._scene import Scene
-
-    path = os.fspath(source)
-    if path in BUILTIN_NAMES or path.lower().endswith(_SCENE_ENDINGS):
-        return Scene(path, progress=progress)
-    return load_mesh(path, progress=progress)

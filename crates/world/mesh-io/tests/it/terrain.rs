@@ -5,8 +5,8 @@ use std::path::Path;
 use glam::DVec3;
 use raypencil_files::sha256;
 use raypencil_mesh_io::{
-    DEFAULT_REFLECTIVITY, FileFrame, UpAxis, glb_bytes, load_mesh, load_terrain, read_terrain,
-    terrain_from_bytes, write_terrain_glb,
+    DEFAULT_REFLECTIVITY, FileFrame, FileUnits, UpAxis, glb_bytes, load_mesh, load_terrain, read_terrain,
+    read_triangles, terrain_from_bytes, write_terrain_glb,
 };
 use raypencil_scene::{Material, Mesh};
 
@@ -179,4 +179,18 @@ fn what_is_no_terrain_is_refused_with_the_name_of_the_file() {
     let error = terrain_from_bytes(far, Path::new("a.obj"), 0.25, &FileFrame { up: None, scale: 1e6 });
     let error = error.unwrap_err().to_string();
     assert!(error.starts_with("a.obj: "), "{error}");
+}
+
+#[test]
+fn what_a_format_states_of_unit_and_axis_is_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes, is_gltf) in [("a.glb", glb(), true), ("a.obj", obj(), false), ("a.ply", ply(), false)] {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        let frame = FileFrame { up: Some(UpAxis::Z), scale: 0.5 };
+        assert_eq!(read_triangles(&path).unwrap().is_gltf, is_gltf, "{name}");
+        let facts = read_terrain(&path, DEFAULT_REFLECTIVITY, &frame).unwrap().facts;
+        assert_eq!(facts.units, Some(FileUnits::Mesh { is_gltf, frame }), "{name}");
+        assert_eq!(facts.dem(), None);
+    }
 }
