@@ -288,7 +288,7 @@ fn a_scene_has_a_standing_vehicle_and_a_digest_of_its_numbers() {
 
 #[test]
 fn the_documented_example_is_the_file() {
-    let docs = std::fs::read_to_string(scenes().join("../../../docs/guide/scene.md")).unwrap();
+    let docs = std::fs::read_to_string(scenes().join("../../docs/guide/scene.md")).unwrap();
     let text = std::fs::read_to_string(scenes().join("default.toml")).unwrap();
     let (_, body) = text.split_once("version = 1\n").unwrap();
     assert!(docs.ends_with(&format!("```toml\nversion = 1\n{body}```\n")));
