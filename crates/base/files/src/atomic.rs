@@ -4,6 +4,7 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use crate::error::FileError;
+use crate::journal::persist;
 
 /// Writes a file beside `path` and renames it to `path` when it is complete, replacing what was there.
 ///
@@ -46,8 +47,7 @@ pub fn write_atomically(
         write(&mut writer)?;
         writer.flush()?;
         drop(writer);
-        temporary.persist(path).map_err(|error| error.error)?;
-        Ok(())
+        persist(temporary, path)
     };
     attempt().map_err(|error| FileError::io(path, "write", error))
 }

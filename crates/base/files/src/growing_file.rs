@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 use crate::error::FileError;
+use crate::journal::persist;
 use crate::npy::header;
 
 /// File that is written beside its path, and renamed when it is finished. Dropped before that, it leaves nothing.
@@ -64,8 +65,7 @@ impl GrowingFile {
         let Self { path, file } = self;
         let attempt = || {
             let file = file.into_inner().map_err(|error| error.into_error())?;
-            file.persist(&path).map_err(|error| error.error)?;
-            Ok(())
+            persist(file, &path)
         };
         attempt().map_err(|error| FileError::io(&path, "write", error))?;
         Ok(path)

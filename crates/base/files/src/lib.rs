@@ -10,7 +10,9 @@
 //! ```text
 //! error                          FileError: the file, the place in it, what was found and what was expected
 //! limits, bytes                  how much a file may ask for, and reading one up to a limit
-//! atomic, folder, sha256         writing a file whole, output folders, digests
+//! quoted                         words for a shell
+//! sha256, journal                digests, and what this process has written where
+//! atomic, folder                 writing a file whole, output folders
 //! output_folder                  one run at a time in a folder, and nothing of an earlier one left in it
 //! harmless                       texts of untrusted files, for terminals and Markdown
 //! growing_file                   a file or table that grows for a while and is seen only when it is complete
@@ -52,6 +54,7 @@ mod exr;
 mod folder;
 mod growing_file;
 mod harmless;
+mod journal;
 mod limits;
 mod named_array;
 mod npy;
@@ -59,6 +62,7 @@ mod npz;
 mod output_folder;
 mod pfm;
 mod png;
+mod quoted;
 mod rays;
 mod sha256;
 mod shape;
@@ -79,6 +83,7 @@ pub use exr::{
 pub use folder::{FolderError, begin_output_folder, create_folder};
 pub use growing_file::{GrowingFile, NpyRows};
 pub use harmless::{harmless, harmless_line, harmless_source, markdown_text};
+pub use journal::put_in_place;
 pub use limits::{
     Limits, MAX_EXPANSION, MAX_EXR_ATTRIBUTES, MAX_EXR_CHANNELS, MAX_EXR_HEADER_BYTES, MAX_EXR_PARTS,
     MAX_INFLATED_BYTES,
@@ -92,6 +97,7 @@ pub use npz::{npz_from_bytes, read_npz};
 pub use output_folder::{MIN_ABANDONED_AGE, OutputFolder, remove_abandoned};
 pub use pfm::{pfm_from_bytes, read_pfm, write_pfm};
 pub use png::{png_from_bytes, read_picture_png};
+pub use quoted::quoted;
 pub use rays::{RayArray, ray_rows, rays_from_bytes, read_rays};
 pub use sha256::{Sha256Digest, combined_sha256_hex, file_sha256, file_sha256_hex, hex_digits, sha256};
 pub use tiff::{read_picture_tiff, tiff_from_bytes};

@@ -1,9 +1,10 @@
 //! The output folder of a run: one run at a time, nothing of an earlier run beside the files of this one, and nothing removed
 //! that no run has made.
 //!
-//! While a run writes, its folder has a locked file. When the run ends, it leaves the list of the files that it made, in the
+//! While a run writes, its folder has a locked file. When the run ends, it leaves the list of the files that it wrote itself, in the
 //! format of `sha256sum`. The next run removes those that it does not make again and that are as the list says: a file that was
-//! changed since, or put there by somebody else, stays.
+//! changed since, or put there by somebody else, at any time, stays. The list names the folder that it was made in: a copy of it
+//! elsewhere is nobody's list.
 
 use std::collections::BTreeMap;
 use std::fs::{File, Metadata, TryLockError};
@@ -13,8 +14,8 @@ use std::time::{Duration, SystemTime};
 
 use crate::atomic::write_atomically;
 use crate::bytes;
-use crate::error::FileError;
 use crate::folder::{FolderError, create_folder};
+use crate::journal::{Journal, is_open};
 use crate::sha256::file_sha256_hex;
 
 /// Name of the file that is locked while a run writes.
@@ -28,6 +29,9 @@ const MAX_MADE_BYTES: u64 = 1 << 26;
 
 /// Depth of folders below the output folder that are looked at.
 const MAX_DEPTH: usize = 6;
+
+/// How often a lock is asked for that somebody has, before a run is taken to have it.
+const LOOKS: u32 = 5;
 
 /// Files by which a folder is a pack.
 const PACK_NAMES: [&str; 3] = ["manifest.json", "raypack.json", "input.json"];
@@ -66,6 +70,8 @@ pub struct OutputFolder {
     made: Vec<PathBuf>,
     /// Locked until the end; `None` on a file system without locks.
     lock: Option<File>,
+    /// What this run has written.
+    journal: Journal,
     /// Files that were there when the run began.
     before: BTreeMap<PathBuf, Stamp>,
     /// Files that an earlier run has made, with their digests.
@@ -76,7 +82,7 @@ impl OutputFolder {
     /// Creates the folder where it is missing, locks it, and removes what a run that was killed has left half-written.
     ///
     /// # Errors
-    /// A folder that cannot be written, into which another run is writing, or that is a pack.
+    /// A folder that cannot be written, into which another run is writing, also as a part of a folder above, or that is a pack.
     pub fn begin(folder: &Path) -> Result<Self, FolderError> {
         if let Some(name) = PACK_NAMES.iter().find(|name| folder.join(name).exists()) {
             return Err(FolderError::IsPack { path: folder.to_path_buf(), file: name });
@@ -92,12 +98,18 @@ impl OutputFolder {
         let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
         let made: Vec<PathBuf> = folder.ancestors().take_while(is_missing).map(PathBuf::from).collect();
         create_folder(folder)?;
+        let cannot = |source| FolderError::Create { path: folder.to_path_buf(), source };
+        let whole = folder.canonicalize().map_err(cannot)?;
+        if let Some(above) = whole.ancestors().skip(1).take(MAX_DEPTH).find(|above| has_run(above)) {
+            return Err(FolderError::InUse { path: above.to_path_buf() });
+        }
         let lock = lock(folder)?;
+        let journal = Journal::begin(folder).map_err(cannot)?;
         let (before, earlier) = (BTreeMap::new(), Vec::new());
-        let mut output = Self { folder: folder.to_path_buf(), made, lock, before, earlier };
+        let mut output = Self { folder: folder.to_path_buf(), made, lock, journal, before, earlier };
         // No run that could be writing them is left.
         output.before = files_below(folder, &mut remove_part);
-        output.earlier = made_earlier(&folder.join(MADE_NAME));
+        output.earlier = made_earlier(folder);
         Ok(output)
     }
 
@@ -119,11 +131,9 @@ impl OutputFolder {
                 inner.map(std::fs::remove_dir);
             }
         }
-        let mut list = String::new();
-        for name in now.keys().filter(|name| !is_as_before(name)) {
+        let mut list = heading(&self.folder) + "\n";
+        for (name, sha256) in self.journal.written().iter().filter(|(name, _)| now.contains_key(*name)) {
             let Some(text) = name.to_str().filter(|text| !text.contains('\n')) else { continue };
-            let path = self.folder.join(name);
-            let (_, sha256) = file_sha256_hex(&path).map_err(|error| FileError::io(&path, "read", error))?;
             list += &format!("{sha256}  {text}\n");
         }
         write_atomically(self.folder.join(MADE_NAME), |file| file.write_all(list.as_bytes()))?;
@@ -171,7 +181,7 @@ fn remove_part(part: &Path) {
 fn lock(folder: &Path) -> Result<Option<File>, FolderError> {
     let path = folder.join(LOCK_NAME);
     // The file may vanish between its opening and its locking, when another run ends: then it is opened again.
-    for _ in 0..100 {
+    for attempt in 0..100 {
         // What is no file is not opened: a pipe would wait for its other end.
         if std::fs::symlink_metadata(&path).is_ok_and(|found| !found.is_file()) {
             break;
@@ -184,6 +194,11 @@ fn lock(folder: &Path) -> Result<Option<File>, FolderError> {
             .map_err(|source| FolderError::Create { path: folder.to_path_buf(), source })?;
         match file.try_lock() {
             Ok(()) => {}
+            // Somebody may only be looking whether there is a run.
+            Err(TryLockError::WouldBlock) if attempt < LOOKS => {
+                std::thread::sleep(Duration::from_millis(2));
+                continue;
+            }
             Err(TryLockError::WouldBlock) => break,
             // A file system without locks.
             Err(TryLockError::Error(_)) => {
@@ -199,6 +214,17 @@ fn lock(folder: &Path) -> Result<Option<File>, FolderError> {
     Err(FolderError::InUse { path: folder.to_path_buf() })
 }
 
+/// Whether another process's run is writing into this very folder.
+fn has_run(folder: &Path) -> bool {
+    let path = folder.join(LOCK_NAME);
+    // What is no file is not opened: a pipe would wait for its other end.
+    if !std::fs::symlink_metadata(&path).is_ok_and(|found| found.is_file()) || is_open(folder) {
+        return false;
+    }
+    let file = File::options().write(true).open(&path);
+    file.is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
+}
+
 /// What tells two files apart; the same for all where the system does not say.
 fn identity(metadata: &Metadata) -> u64 {
     #[cfg(unix)]
@@ -208,7 +234,7 @@ fn identity(metadata: &Metadata) -> u64 {
 }
 
 /// The regular files below a folder, by their paths in it, without those of this module. Calls `part` for each half-written
-/// file or folder of a run. Links are not followed.
+/// file or folder of a run, but for those of runs that are still writing into a folder below. Links are not followed.
 fn files_below(folder: &Path, part: &mut dyn FnMut(&Path)) -> BTreeMap<PathBuf, Stamp> {
     let mut found = BTreeMap::new();
     let mut folders = vec![(PathBuf::new(), 0)];
@@ -224,7 +250,9 @@ fn files_below(folder: &Path, part: &mut dyn FnMut(&Path)) -> BTreeMap<PathBuf, 
                     part(&entry.path());
                 }
             } else if metadata.is_dir() && depth < MAX_DEPTH {
-                folders.push((name, depth + 1));
+                if !has_run(&entry.path()) && !is_open(&entry.path()) {
+                    folders.push((name, depth + 1));
+                }
             } else if metadata.is_file() {
                 found.insert(name, (metadata.len(), metadata.modified().ok(), identity(&metadata)));
             }
@@ -233,11 +261,26 @@ fn files_below(folder: &Path, part: &mut dyn FnMut(&Path)) -> BTreeMap<PathBuf, 
     found
 }
 
-/// The list of an earlier run: paths with digests. A path that leads out of the folder is none of the files found below it, so
-/// nothing is done with it.
-fn made_earlier(path: &Path) -> Vec<(PathBuf, String)> {
-    let Ok(text) = bytes::read_file(path, MAX_MADE_BYTES) else { return Vec::new() };
+/// The first line of a list: the folder that it was made in. A folder that is copied, or comes out of an archive, is another one;
+/// where the system does not say, all are alike.
+fn heading(folder: &Path) -> String {
+    #[cfg(unix)]
+    if let Ok(found) = std::fs::metadata(folder) {
+        use std::os::unix::fs::MetadataExt as _;
+        return format!("# made in folder {}:{}", found.dev(), found.ino());
+    }
+    let _ = folder;
+    "# made in a folder".to_string()
+}
+
+/// The list of an earlier run in this folder: paths with digests. A path that leads out of the folder is none of the files found
+/// below it, so nothing is done with it.
+fn made_earlier(folder: &Path) -> Vec<(PathBuf, String)> {
+    let Ok(text) = bytes::read_file(&folder.join(MADE_NAME), MAX_MADE_BYTES) else { return Vec::new() };
     let text = String::from_utf8_lossy(&text);
+    if text.lines().next() != Some(heading(folder).as_str()) {
+        return Vec::new();
+    }
     let line = |line: &str| {
         let (sha256, name) = line.split_once("  ")?;
         Some((PathBuf::from(name), sha256.to_string()))

@@ -12,7 +12,7 @@
 
 use std::path::Path;
 
-use raypencil_files::{Attributes, FileError, FolderError, create_folder};
+use raypencil_files::{Attributes, FileError, FolderError, create_folder, put_in_place};
 use raypencil_judge::Certified;
 use raypencil_referee::{Format, Referee};
 use raypencil_scene::{Progress, Scene, SceneError, SensorId};
@@ -210,7 +210,7 @@ fn write_files(
         if let Some(parent) = to.parent() {
             create_folder(parent)?;
         }
-        std::fs::rename(folder.join(&file.path), &to).map_err(|error| FileError::io(&to, "write", error))?;
+        put_in_place(&folder.join(&file.path), &to)?;
     }
     manifest.write(place)?;
     Ok(manifest)

@@ -110,7 +110,10 @@ fn a_planted_list_removes_nothing_that_is_not_as_it_says() {
     let x = file_sha256_hex(&folder.join("inside")).unwrap().1;
     let other = "0".repeat(64);
     let outside = parent.path().join("outside").display().to_string();
-    let list = format!("{x}  ../outside\n{x}  {outside}\n{other}  inside\nrubbish\n\u{fffd}\n");
+    let list = format!(
+        "{}\n{x}  ../outside\n{x}  {outside}\n{other}  inside\nrubbish\n\u{fffd}\n",
+        heading(&folder)
+    );
     std::fs::write(folder.join(MADE_NAME), list).unwrap();
     run(&folder, &["a"]);
     assert_eq!(names(&folder), ["a", "inside"]);
@@ -161,4 +164,67 @@ fn only_what_is_old_is_abandoned() {
     assert!(!part.exists());
     assert_eq!(names(folder.path()), ["whole"]);
     remove_abandoned(&folder.path().join("nowhere"), Duration::ZERO);
+}
+
+#[test]
+fn what_somebody_else_writes_meanwhile_is_not_the_run_s() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    let output = OutputFolder::begin(folder).unwrap();
+    write_atomically(folder.join("ours"), |file| file.write_all(b"ours")).unwrap();
+    std::fs::create_dir(folder.join("mine")).unwrap();
+    std::fs::write(folder.join("mine/x.npy"), "precious").unwrap();
+    // Also in place of a file that the run has written.
+    write_atomically(folder.join("both"), |file| file.write_all(b"ours")).unwrap();
+    std::fs::write(folder.join("both"), "precious").unwrap();
+    output.finish().unwrap();
+    run(folder, &["a"]);
+    assert_eq!(names(folder), ["a", "both", "mine/x.npy"]);
+}
+
+#[test]
+fn the_list_of_a_folder_that_came_from_elsewhere_removes_nothing() {
+    let parent = TempDir::new().unwrap();
+    let (theirs, mine) = (parent.path().join("theirs"), parent.path().join("mine"));
+    run(&theirs, &["a", "b"]);
+    create_folder(&mine).unwrap();
+    for name in ["a", "b", MADE_NAME] {
+        std::fs::copy(theirs.join(name), mine.join(name)).unwrap();
+    }
+    run(&mine, &["c"]);
+    let left = if cfg!(unix) { vec!["a", "b", "c"] } else { vec!["c"] };
+    assert_eq!(names(&mine), left);
+    // Moved with its folder, it is the same list.
+    let moved = parent.path().join("moved");
+    std::fs::rename(&theirs, &moved).unwrap();
+    run(&moved, &["c"]);
+    assert_eq!(names(&moved), ["c"]);
+}
+
+#[test]
+fn a_run_below_is_left_alone_and_one_above_is_not_disturbed() {
+    let folder = TempDir::new().unwrap();
+    let (above, below) = (folder.path(), folder.path().join("sub"));
+    let inner = OutputFolder::begin(&below).unwrap();
+    let mut growing = crate::GrowingFile::create(below.join("log.csv")).unwrap();
+    growing.add("a").unwrap();
+    // Its temporary file is its own, and its files are.
+    run(above, &["a"]);
+    growing.add("b").unwrap();
+    growing.finish().unwrap();
+    inner.finish().unwrap();
+    run(above, &["b"]);
+    assert_eq!(names(above), ["b", "sub/log.csv"]);
+    // Parts of one run may have folders of their own.
+    let outer = OutputFolder::begin(above).unwrap();
+    run(&below, &["c"]);
+    outer.finish().unwrap();
+    assert_eq!(names(above), ["sub/c"]);
+    // A lock that another process holds above.
+    let lock = File::options().create(true).truncate(false).write(true).open(above.join(LOCK_NAME)).unwrap();
+    lock.lock().unwrap();
+    let error = OutputFolder::begin(&below).unwrap_err().to_string();
+    assert!(error.contains("another run is writing into it"), "{error}");
+    drop(lock);
+    drop(OutputFolder::begin(&below).unwrap());
 }

@@ -1,0 +1,113 @@
+//! What this process writes into its output folders, noted while it is written.
+//!
+//! What a run made is what it wrote itself. Whatever else appears in the folder meanwhile belongs to somebody else, who is not to
+//! lose it.
+
+use std::collections::BTreeMap;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use tempfile::NamedTempFile;
+
+use crate::error::FileError;
+use crate::sha256::file_sha256_hex;
+
+/// The output folders that runs of this process are writing into.
+static OPEN: Mutex<Vec<Open>> = Mutex::new(Vec::new());
+
+struct Open {
+    /// Canonical, so that one folder has one name.
+    folder: PathBuf,
+    /// Files below it, with their digests.
+    written: BTreeMap<PathBuf, String>,
+}
+
+/// The files that this process writes below a folder, as long as this value lives.
+#[derive(Debug)]
+pub(crate) struct Journal {
+    folder: PathBuf,
+}
+
+impl Journal {
+    /// Begins to note what is written below a folder, which exists and which nobody else in this process writes into.
+    pub(crate) fn begin(folder: &Path) -> io::Result<Self> {
+        let folder = folder.canonicalize()?;
+        open().push(Open { folder: folder.clone(), written: BTreeMap::new() });
+        Ok(Self { folder })
+    }
+
+    /// The files that were written so far, by their paths in the folder, with their digests.
+    pub(crate) fn written(&self) -> BTreeMap<PathBuf, String> {
+        let open = open();
+        open.iter()
+            .find(|open| open.folder == self.folder)
+            .map(|open| open.written.clone())
+            .unwrap_or_default()
+    }
+}
+
+impl Drop for Journal {
+    fn drop(&mut self) {
+        open().retain(|open| open.folder != self.folder);
+    }
+}
+
+/// Whether a run of this process is writing into this very folder.
+pub(crate) fn is_open(folder: &Path) -> bool {
+    folder.canonicalize().is_ok_and(|folder| open().iter().any(|open| open.folder == folder))
+}
+
+/// Puts a complete temporary file in its place, and notes it where a run is open.
+pub(crate) fn persist(temporary: NamedTempFile, path: &Path) -> io::Result<()> {
+    let noted = note(temporary.path(), path)?;
+    temporary.persist(path).map_err(|error| error.error)?;
+    enter(noted);
+    Ok(())
+}
+
+/// Puts a complete file of this process in its place, on the same file system, and notes it where a run is open.
+///
+/// # Errors
+/// The error of the file system, with the path of the place.
+pub fn put_in_place(from: &Path, to: &Path) -> Result<(), FileError> {
+    let attempt = || {
+        let noted = note(from, to)?;
+        std::fs::rename(from, to)?;
+        enter(noted);
+        Ok(())
+    };
+    attempt().map_err(|error: io::Error| FileError::io(to, "write", error))
+}
+
+/// The canonical path of a file, and its digest before anybody else can see it; `None` where no run is open for it.
+fn note(file: &Path, path: &Path) -> io::Result<Option<(PathBuf, String)>> {
+    if open().is_empty() {
+        return Ok(None);
+    }
+    let folder = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let Some(name) = path.file_name() else { return Ok(None) };
+    let place = folder.canonicalize()?.join(name);
+    if !open().iter().any(|open| place.starts_with(&open.folder)) {
+        return Ok(None);
+    }
+    let (_, sha256) = file_sha256_hex(file)?;
+    Ok(Some((place, sha256)))
+}
+
+fn enter(noted: Option<(PathBuf, String)>) {
+    let Some((place, sha256)) = noted else { return };
+    for open in open().iter_mut() {
+        if let Ok(name) = place.strip_prefix(&open.folder) {
+            open.written.insert(name.to_path_buf(), sha256.clone());
+        }
+    }
+}
+
+fn open() -> MutexGuard<'static, Vec<Open>> {
+    // The list is whole after each of its changes.
+    OPEN.lock().unwrap_or_else(PoisonError::into_inner)
+}
