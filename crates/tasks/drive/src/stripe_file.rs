@@ -84,7 +84,9 @@ impl StripeExtractor for StripeFile {
                 let expected = format!("a place in the image of {width} x {height} pixels");
                 return Err(SceneError::new(field, format!("column {i}, row {row}"), expected));
             }
-            edges.push(*of);
+            // On the lower border of the image: it belongs to the last row of pixels.
+            let edge = EdgePoint { j: of.edge.j.min(height.saturating_sub(1)), ..of.edge };
+            edges.push(BeamEdge { edge, ..*of });
         }
         Ok(Stripes { edges, columns_left_out: 0 })
     }
@@ -112,6 +114,7 @@ mod tests {
             [3.0, -1.0, 1.0, 2.0, 1.25],
             [3.0, 7.0, 0.0, 1.0, 0.5],
             [2.0, -1.0, 0.0, 5.0, 3.0],
+            [5.0, -1.0, 0.0, 0.0, 5.0],
         ];
         let (_folder, file) = written(&rows.concat());
         let file = file.unwrap();
@@ -121,6 +124,8 @@ mod tests {
         assert_eq!(at(3, None, Some(0)).unwrap(), [edge(0, 2, 4, 4.5)]);
         assert_eq!(at(3, None, None).unwrap(), [edge(0, 2, 4, 4.5), edge(1, 2, 1, 1.25)]);
         assert_eq!(at(3, Some(7), Some(0)).unwrap(), [edge(0, 1, 0, 0.5)]);
+        // On the lower border of the image of 5 rows: in the last of them, and not in one that is not there.
+        assert_eq!(at(5, None, None).unwrap(), [edge(0, 0, 4, 5.0)]);
         assert!(at(4, None, None).unwrap().is_empty());
         // The image has columns 0 to 5: a narrower one refuses the edge of frame 2.
         assert!(at(2, None, None).is_ok());

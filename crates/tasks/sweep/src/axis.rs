@@ -127,6 +127,9 @@ fn split(text: &str) -> Vec<&str> {
     parts
 }
 
+/// Decimals of a range's numbers, at most: more than any double between 1e-20 and 1 tells apart.
+const MAX_DECIMALS: usize = 40;
+
 /// Values of `FIRST:LAST:STEP`; `None` if the text is no such range. The values have the decimals of the numbers, so that 0.1
 /// and two steps of 0.1 are 0.3.
 fn range(text: &str, room: usize) -> Result<Option<Vec<String>>, String> {
@@ -159,6 +162,9 @@ fn range(text: &str, room: usize) -> Result<Option<Vec<String>>, String> {
         return Ok(Some((0..=count as u64).map(|k| format!("{:e}", low + k as f64 * by)).collect()));
     }
     let decimals = decimals(first).max(decimals(step));
+    if decimals > MAX_DECIMALS {
+        return Err(format!("a range with {decimals} decimals; expected at most {MAX_DECIMALS}"));
+    }
     Ok(Some((0..=count as u64).map(|k| format!("{:.decimals$}", low + k as f64 * by)).collect()))
 }
 
@@ -206,6 +212,7 @@ mod tests {
             ("a=1:five:2", "a range has three numbers"),
             ("a=1:2:3:4", "a range has three parts"),
             ("a=1:inf:1", "a range has three numbers"),
+            (&format!("a=0.{}1:1:1", "0".repeat(70_000)), "with 70001 decimals; expected at most 40"),
         ] {
             let message = Axis::parse(text).unwrap_err().to_string();
             assert!(message.contains(expected), "{text}: {message}");

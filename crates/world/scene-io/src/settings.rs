@@ -11,6 +11,9 @@ use toml_edit::{ArrayOfTables, Document, DocumentMut, InlineTable, Item, Table, 
 
 use crate::scene_error::SceneIoError;
 
+/// Parts of a key, at most.
+const MAX_PARTS: usize = 16;
+
 /// A key of a scene file with its value.
 ///
 /// ```
@@ -52,7 +55,7 @@ impl Setting {
     /// Without the number, all of them are set: `beam.pitch_down_deg`.
     ///
     /// # Errors
-    /// A key with an empty part, or with a character that no key has.
+    /// A key with an empty part, with a character that no key has, or of more than 16 parts.
     pub fn new(key: &str, value: &str) -> Result<Self, SceneIoError> {
         let setting = Self { key: key.into(), value: value.into() };
         let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-".contains(c);
@@ -60,6 +63,11 @@ impl Setting {
             return Err(
                 setting.refused(format!("`{key}` is no key; expected one such as camera.pitch_down_deg"))
             );
+        }
+        // A table within a table for each part: the deepest key of a scene has five.
+        let parts = key.split('.').count();
+        if parts > MAX_PARTS {
+            return Err(setting.refused(format!("the key has {parts} parts; expected at most {MAX_PARTS}")));
         }
         Ok(setting)
     }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use raypencil_files::{FileError, RayArray, ray_rows};
+use raypencil_files::{FileError, RayArray, quoted, ray_rows};
 use raypencil_referee::ExactCast;
 use raypencil_scene::{Precision, Progress};
 
@@ -44,7 +44,7 @@ impl RayPackChecked {
         let (_, numbers) = ray_rows(&self.rays.rays[index..=index]);
         let numbers: Vec<String> = numbers.iter().map(f64::to_string).collect();
         let fronts = if self.fronts_only { " --fronts-only" } else { "" };
-        format!("raypencil cast {} --ray={}{fronts} --all --margins", self.pack, numbers.join(","))
+        format!("raypencil cast {} --ray={}{fronts} --all --margins", quoted(&self.pack), numbers.join(","))
     }
 }
 

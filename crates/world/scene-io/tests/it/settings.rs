@@ -181,3 +181,12 @@ fn sets_of_rays_take_settings() {
     };
     assert!((height(&["rays.position_m=[0, 0, 3]"]) - height(&[]) - 1.0).abs() < 1e-12);
 }
+
+#[test]
+fn a_key_of_many_parts_is_refused_before_it_becomes_tables() {
+    for parts in [17, 85, 100_000] {
+        let error = Setting::new(&vec!["a"; parts].join("."), "1").unwrap_err().to_string();
+        assert!(error.contains(&format!("the key has {parts} parts; expected at most 16")), "{parts}");
+    }
+    assert!(Setting::new(&["a"; 16].join("."), "1").is_ok());
+}

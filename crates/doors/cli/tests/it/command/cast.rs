@@ -213,6 +213,10 @@ fn packs_of_rays_judge_arrays() {
     let shown = screen(folder.path(), &["check", "pack", "mine"], 1);
     assert!(shown.contains("1 of 25 rays is wrong."), "{shown}");
     assert!(shown.contains("raypencil cast pack --ray=0,0,3,0,0,-1,0,inf --all --margins"), "{shown}");
+    // The command is to be copied into a shell, whatever the folder is called.
+    fs::rename(folder.path().join("pack"), folder.path().join("a;id")).unwrap();
+    let shown = screen(folder.path(), &["check", "a;id", "mine"], 1);
+    assert!(shown.contains("raypencil cast 'a;id' --ray=0,0,3,0,0,-1,0,inf --all"), "{shown}");
 }
 
 #[test]
