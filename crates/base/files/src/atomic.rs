@@ -4,7 +4,7 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use crate::error::FileError;
-use crate::journal::persist;
+use crate::journal::{persist, temporary_beside};
 
 /// Writes a file beside `path` and renames it to `path` when it is complete, replacing what was there.
 ///
@@ -32,17 +32,7 @@ pub fn write_atomically(
 ) -> Result<(), FileError> {
     let path = path.as_ref();
     let attempt = || {
-        // A bare file name has the empty path as its parent.
-        let folder = match path.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent,
-            _ => Path::new("."),
-        };
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".raypencil-").suffix(".part");
-        // Temporary files are private by default; the finished file is to be as readable as any other output.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let mut temporary = builder.tempfile_in(folder)?;
+        let mut temporary = temporary_beside(path)?;
         let mut writer = BufWriter::new(temporary.as_file_mut());
         write(&mut writer)?;
         writer.flush()?;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 use crate::error::FileError;
-use crate::journal::persist;
+use crate::journal::{persist, temporary_beside};
 use crate::npy::header;
 
 /// File that is written beside its path, and renamed when it is finished. Dropped before that, it leaves nothing.
@@ -36,16 +36,7 @@ impl GrowingFile {
     /// The error of the file system, with the path.
     pub fn create(path: impl AsRef<Path>) -> Result<Self, FileError> {
         let path = path.as_ref().to_path_buf();
-        let folder = match path.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent,
-            _ => Path::new("."),
-        };
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".raypencil-").suffix(".part");
-        // Temporary files are private by default; the finished file is to be as readable as any other output.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let file = builder.tempfile_in(folder).map_err(|error| FileError::io(&path, "write", error))?;
+        let file = temporary_beside(&path).map_err(|error| FileError::io(&path, "write", error))?;
         Ok(Self { path, file: BufWriter::new(file) })
     }
 

@@ -58,6 +58,24 @@ pub(crate) fn is_open(folder: &Path) -> bool {
     folder.canonicalize().is_ok_and(|folder| open().iter().any(|open| open.folder == folder))
 }
 
+/// The folder of a file; a bare name has the empty path as its parent.
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+/// A new file beside the place that [`persist`] puts it in.
+pub(crate) fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".raypencil-").suffix(".part");
+    // Temporary files are private by default; the finished file is to be as readable as any other output.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder_of(path))
+}
+
 /// Puts a complete temporary file in its place, and notes it where a run is open.
 pub(crate) fn persist(temporary: NamedTempFile, path: &Path) -> io::Result<()> {
     let noted = note(temporary.path(), path)?;
@@ -85,12 +103,8 @@ fn note(file: &Path, path: &Path) -> io::Result<Option<(PathBuf, String)>> {
     if open().is_empty() {
         return Ok(None);
     }
-    let folder = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
     let Some(name) = path.file_name() else { return Ok(None) };
-    let place = folder.canonicalize()?.join(name);
+    let place = folder_of(path).canonicalize()?.join(name);
     if !open().iter().any(|open| place.starts_with(&open.folder)) {
         return Ok(None);
     }
