@@ -97,12 +97,15 @@ impl OutputFolder {
     pub fn begin_any(folder: &Path) -> Result<Self, FolderError> {
         let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
         let made: Vec<PathBuf> = folder.ancestors().take_while(is_missing).map(PathBuf::from).collect();
-        create_folder(folder)?;
         let cannot = |source| FolderError::Create { path: folder.to_path_buf(), source };
-        let whole = folder.canonicalize().map_err(cannot)?;
-        if let Some(above) = whole.ancestors().skip(1).take(MAX_DEPTH).find(|above| has_run(above)) {
+        // Before anything is made, so that a run that is refused leaves nothing.
+        let there = folder.ancestors().find(|above| above.exists()).unwrap_or(Path::new("."));
+        let whole = there.canonicalize().map_err(cannot)?;
+        let own = usize::from(there == folder);
+        if let Some(above) = whole.ancestors().skip(own).take(MAX_DEPTH).find(|above| has_run(above)) {
             return Err(FolderError::InUse { path: above.to_path_buf() });
         }
+        create_folder(folder)?;
         let lock = lock(folder)?;
         let journal = Journal::begin(folder).map_err(cannot)?;
         let (before, earlier) = (BTreeMap::new(), Vec::new());

@@ -225,6 +225,21 @@ fn a_run_below_is_left_alone_and_one_above_is_not_disturbed() {
     lock.lock().unwrap();
     let error = OutputFolder::begin(&below).unwrap_err().to_string();
     assert!(error.contains("another run is writing into it"), "{error}");
+    assert!(OutputFolder::begin(&below.join("deeper/still")).is_err());
+    assert!(!below.join("deeper").exists());
     drop(lock);
     drop(OutputFolder::begin(&below).unwrap());
+}
+
+#[test]
+fn a_file_that_is_put_in_its_place_is_the_run_s_too() {
+    let folder = TempDir::new().unwrap();
+    let (folder, staged) = (folder.path(), folder.path().join(".raypencil-staged.part"));
+    let output = OutputFolder::begin(folder).unwrap();
+    std::fs::write(&staged, "staged").unwrap();
+    crate::put_in_place(&staged, &folder.join("a")).unwrap();
+    output.finish().unwrap();
+    assert_eq!(names(folder), ["a"]);
+    run(folder, &["b"]);
+    assert_eq!(names(folder), ["b"]);
 }
