@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::atomic::write_atomically;
 use crate::error::FileError;
 
 /// Why an output folder could not be prepared, or one of its files not be written.
@@ -81,6 +82,30 @@ pub fn begin_output_folder(folder: &Path, last: &str) -> Result<PathBuf, FolderE
         }
         _ => Ok(last),
     }
+}
+
+/// Writes texts under their names into an output folder. The last marks a complete folder.
+///
+/// ```
+/// use raypencil_files::write_texts;
+///
+/// let parent = tempfile::tempdir()?;
+/// let folder = parent.path().join("out");
+/// write_texts(&folder, &[("report.html", "<p>".to_string()), ("summary.json", "{}".to_string())])?;
+/// assert_eq!(std::fs::read_to_string(folder.join("summary.json"))?, "{}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// Names the file or folder that could not be written, and why.
+pub fn write_texts(folder: &Path, texts: &[(&str, String)]) -> Result<(), FolderError> {
+    if let Some((last, _)) = texts.last() {
+        begin_output_folder(folder, last)?;
+    }
+    for (name, text) in texts {
+        write_atomically(folder.join(name), |file| file.write_all(text.as_bytes()))?;
+    }
+    Ok(())
 }
 
 /// Creates a folder and its parents where they are missing.

@@ -80,7 +80,7 @@ pub use exr::{
     Attributes, ExrMap, ExrPart, Raster, exr_from_bytes, exr_parts_from_bytes, read_exr, read_exr_map,
     read_exr_parts, write_exr, write_exr_map,
 };
-pub use folder::{FolderError, begin_output_folder, create_folder};
+pub use folder::{FolderError, begin_output_folder, create_folder, write_texts};
 pub use growing_file::{GrowingFile, NpyRows};
 pub use harmless::{harmless, harmless_line, harmless_source, markdown_text};
 pub use journal::put_in_place;

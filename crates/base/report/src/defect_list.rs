@@ -3,7 +3,7 @@
 use askama::Template;
 
 /// A ray that is wrong: where, in what, and the command that shows it.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct DefectLine {
     /// Place of the ray.
     pub place: String,
@@ -15,6 +15,8 @@ pub struct DefectLine {
     pub what: String,
     /// A folder with more about the ray; empty if there is none.
     pub folder: String,
+    /// Files with more about it: their titles, and their paths from the page.
+    pub links: Vec<(&'static str, String)>,
     /// Command that shows everything about the ray.
     pub command: String,
 }
@@ -46,8 +48,8 @@ struct DefectList<'a> {
 ///     quantity: "range".into(),
 ///     words: "says 2 m, true is 3 m".into(),
 ///     what: "a hit on another face".into(),
-///     folder: String::new(),
 ///     command: "raypencil probe yard.toml --pixel 3,4".into(),
+///     ..DefectLine::default()
 /// };
 /// let group = DefectGroup { title: "camera: 1 wrong ray".into(), lines: vec![line], more: String::new() };
 /// let html = defect_list(&[group])?;

@@ -14,6 +14,7 @@
 //! drawing -> axes                 axes of a plot
 //! version -> page                 head and end of an HTML page
 //! junit                           test results for continuous integration
+//! document                        what a command found, as a screen, a page, Markdown, JUnit and JSON
 //! ```
 //!
 //! Sources: the colour maps are viridis (van der Walt and Smith) and ColorBrewer's RdBu (Brewer), by `colorous`. SVG is
@@ -32,6 +33,7 @@
 mod axes;
 mod colour;
 mod defect_list;
+mod document;
 mod drawing;
 mod junit;
 mod letters;
@@ -49,6 +51,7 @@ mod version;
 pub use axes::{TICK_LENGTH_PX, draw_axes};
 pub use colour::Colour;
 pub use defect_list::{DefectGroup, DefectLine, defect_list};
+pub use document::{Block, Column, Document, Grid, Outcome, Room, markdown_code, markdown_text};
 pub use drawing::{Anchor, Drawing, INK, LETTERS, Mark, SOFT};
 pub use junit::{JunitCase, JunitReport, JunitSuite};
 pub use maps::{MapPair, SensorPlots};
@@ -60,7 +63,7 @@ pub use plot::{
 };
 pub use scale::{Scale, Spread, Tick};
 pub use table::{Align, Table};
-pub use text::{count, counted, described_words, list, number, quantity, time};
+pub use text::{count, counted, described_words, escaped, list, number, quantity, time};
 pub use version::VERSION;
 
 #[cfg(doctest)]

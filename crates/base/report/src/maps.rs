@@ -6,7 +6,7 @@ use raypencil_scene::{Image, Maybe, Place, SensorId};
 use crate::picture::{ColourMap, Picture, Reduction};
 use crate::plot::{Bar, Plot, Ring, cells_axis, reduced_to, shape, stretch};
 use crate::scale::{Scale, Spread, Tick};
-use crate::text::{count, number};
+use crate::text::{count, escaped, number};
 
 /// Maximum marked defects in a picture.
 const MAX_MARKS: usize = 100;
@@ -63,6 +63,20 @@ impl SensorPlots {
     /// An error of the template.
     pub fn html(&self) -> Result<String, askama::Error> {
         self.render()
+    }
+
+    /// The pictures as HTML, below a title, the size of the maps and some words.
+    ///
+    /// # Errors
+    /// An error of the template.
+    pub fn section(&self, title: &str, size: &str, words: &str) -> Result<String, askama::Error> {
+        let [title, size, words, note] = [title, size, words, &self.note].map(escaped);
+        let note = if note.is_empty() { note } else { format!("<div class=\"soft\">{note}</div>\n") };
+        let pictures = self.html()?;
+        Ok(format!(
+            "<section class=\"sensor\">\n<h3>{title} <span class=\"soft\">{size}</span></h3>\n\
+             <div class=\"soft\">{words}</div>\n{note}{pictures}\n</section>\n"
+        ))
     }
 
     /// Adds the pictures of some range maps, on one scale.

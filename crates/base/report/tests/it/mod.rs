@@ -1,5 +1,6 @@
 //! Everything that reports are made of, by its public items.
 
+mod document;
 mod drawing;
 mod junit;
 mod picture;

@@ -249,6 +249,7 @@ fn misses(subject: &Subject, report: &CandidateReport) -> DefectGroup {
             what: wrong.what.clone(),
             folder: miss_folder(report, index),
             command: probe_command(subject, wrong.place),
+            ..DefectLine::default()
         })
         .collect();
     let more = match total - total.min(lines.len() as u64) {

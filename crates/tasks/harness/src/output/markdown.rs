@@ -2,7 +2,7 @@
 
 use askama::Template;
 use raypencil_judge::{Class, ListedDefect};
-use raypencil_report::{VERSION, count, counted, time};
+use raypencil_report::{VERSION, count, counted, markdown_code as code, markdown_text as escaped, time};
 use raypencil_scene_io::{probe_command, scene_sha256};
 
 use crate::output::candidates::{self, Cell, candidates_section};
@@ -143,33 +143,4 @@ pub fn markdown(validation: &Validation) -> Result<String, askama::Error> {
     let mut text = page.render()?;
     text.push('\n');
     Ok(text)
-}
-
-/// Text with its markup escaped: a candidate's name is untrusted.
-fn escaped(text: &str) -> String {
-    text.chars()
-        .flat_map(|c| {
-            let is_markup = "\\`*_[]<>|&~".contains(c);
-            is_markup.then_some('\\').into_iter().chain([if c.is_control() { ' ' } else { c }])
-        })
-        .collect()
-}
-
-/// A code span, with a fence longer than any run of backticks in the text.
-fn code(text: &str) -> String {
-    let longest = text.split(|character| character != '`').map(str::len).max().unwrap_or(0);
-    let fence = "`".repeat(longest + 1);
-    let pad = if longest > 0 { " " } else { "" };
-    format!("{fence}{pad}{}{pad}{fence}", text.replace(['\n', '\r'], " "))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn code_spans_may_contain_backticks() {
-        assert_eq!(code("pyramids"), "`pyramids`");
-        assert_eq!(code("a`b"), "`` a`b ``");
-    }
 }

@@ -323,8 +323,8 @@ fn defects(validation: &Validation, pair: &Pair) -> Vec<DefectGroup> {
                 quantity: name_of(defect.item),
                 words: defect.words(),
                 what: defect.what.clone(),
-                folder: String::new(),
                 command: probe_command(&validation.subject, defect.place),
+                ..DefectLine::default()
             })
             .collect();
         let more = match total - total.min(lines.len() as u64) {
