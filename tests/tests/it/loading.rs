@@ -6,9 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use raypencil::io::{Overrides, load, write_npy};
-use raypencil::pack::{
-    InputChecked, LoadingClause, check_input, input_faces, input_glb, input_screen, write_input,
-};
+use raypencil::pack::{InputChecked, LoadingClause, check_input, input_faces, input_glb, write_input};
 use raypencil::{Image, Mesh};
 use raypencil_tests::naive_loader::{LoadedFace, LoadingFault, NaiveLoader};
 
@@ -47,7 +45,7 @@ fn our_loader_and_the_naive_one_pass() {
     let scene = load(&ground.to_string_lossy(), &Overrides::default()).expect("a terrain").scene;
     for faces in [faces_of(scene.mesh()), NaiveLoader::faces(&input_glb(), None)] {
         let found = checked(&faces);
-        assert!(found.passes(), "{}", input_screen(&found));
+        assert!(found.passes(), "{}", found.document().screen());
         assert_eq!((found.given, found.faces, found.has_reflectivity), (28, 28, true));
     }
 }
@@ -61,7 +59,7 @@ fn each_wrong_loader_fails_by_the_clause_that_it_breaks() {
         assert!(!found.passes(), "{fault:?} passes");
         // The faces of the clause itself are wrong, or there are too few or too many faces.
         let (_, wrong) = found.of(clause);
-        assert!(wrong > 0 || found.given != found.faces, "{fault:?}: {}", input_screen(&found));
+        assert!(wrong > 0 || found.given != found.faces, "{fault:?}: {}", found.document().screen());
         broken.insert(clause);
     }
     assert_eq!(broken.len(), LoadingClause::ALL.len());
@@ -83,7 +81,7 @@ fn any_corner_may_be_first_and_reflectivities_may_be_left_out() {
     fs::copy(committed().join("triangles.npy"), folder.path().join("triangles.npy")).expect("a copy");
     let found = check_input(&committed(), folder.path()).expect("an answer");
     assert!(found.passes() && !found.has_reflectivity);
-    assert!(input_screen(&found).contains("Reflectivities are not given."));
+    assert!(found.document().screen().contains("Reflectivities are not given."));
 }
 
 #[test]

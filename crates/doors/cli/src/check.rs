@@ -1,16 +1,9 @@
 //! `raypencil check`: another program's answers against a reference pack.
 
-use raypencil::Precision;
-use raypencil::cast::{
-    CandidateConventions, check_ray_pack, is_ray_pack, ray_check_json, ray_check_text, write_ray_check,
-};
-use raypencil::harness::{CheckedRaySet, check_packed_ray_sets};
+use raypencil::harness::{check_any_pack, pack_form};
 use raypencil::io::OutputFolder;
 use raypencil::judge::JudgeShare;
-use raypencil::pack::{
-    Declarations, check_input, check_json, check_pack_by, check_screen, input_json, input_screen,
-    is_input_pack, write_check, write_input_check,
-};
+use raypencil::pack::{Declarations, PackForm};
 
 use crate::args::Check;
 use crate::console::{Spinner, say};
@@ -24,12 +17,7 @@ pub(crate) fn check(command: &Check, json: bool) -> Result<Outcome, Trouble> {
 }
 
 fn checked(command: &Check, json: bool) -> Result<Outcome, Trouble> {
-    if is_input_pack(&command.pack) {
-        return check_loader(command, json);
-    }
-    if is_ray_pack(&command.pack) {
-        return check_rays(command, json);
-    }
+    refuse_declared(command)?;
     let spinner = Spinner::new();
     let declarations = Declarations {
         precision: command.arithmetic,
@@ -38,84 +26,35 @@ fn checked(command: &Check, json: bool) -> Result<Outcome, Trouble> {
         ..command.declared.declarations()
     };
     let share = if command.verify { JudgeShare::All } else { JudgeShare::Sample };
-    let (pack, candidate) = (&command.pack, &command.candidate);
-    memory::ask_check(pack)?;
-    let mut checked = check_pack_by(pack, candidate, &declarations, share, &spinner)?;
-    // The sets of rays that the pack has besides, if there are any.
-    let precision = checked.recorded.precision;
-    let declared = &checked.declared;
-    let of_rays = CandidateConventions { miss: declared.miss, ignores_faces: declared.ignores_faces };
-    let sets = check_packed_ray_sets(&command.pack, &command.candidate, precision, of_rays, &spinner)?;
-    checked.ray_sets = sets.iter().map(CheckedRaySet::outcome).collect();
+    if pack_form(&command.pack) == PackForm::Sensors {
+        memory::ask_check(&command.pack)?;
+    }
+    let checked = check_any_pack(&command.pack, &command.candidate, &declarations, share, &spinner)?;
     if let Some(folder) = &command.output {
-        write_check(&checked, folder)?;
-        for CheckedRaySet { name, checked } in &sets {
-            if let Some(checked) = checked {
-                write_ray_check(checked, &folder.join("rays").join(name))?;
-            }
-        }
+        checked.write(folder)?;
     }
     drop(spinner);
-    if json {
-        say(&check_json(&checked));
-    } else {
-        say(&check_screen(&checked));
-        sets.iter().for_each(|set| say(&set_text(set)));
-    }
+    let document = checked.document();
+    say(&if json { document.json() } else { document.screen() });
     Ok(if checked.passes() { Outcome::Fine } else { Outcome::Differs })
 }
 
-/// A set of rays on the screen.
-fn set_text(CheckedRaySet { name, checked }: &CheckedRaySet) -> String {
-    match checked {
-        Some(checked) => format!("\nrays {}", ray_check_text(checked)),
-        None => format!("\nrays {name}: not given\n"),
-    }
-}
-
-/// The same for a pack of rays.
-fn check_rays(command: &Check, json: bool) -> Result<Outcome, Trouble> {
-    refuse_declared(command, "pack of rays, whose answers are NPY files of fixed names")?;
-    let spinner = Spinner::new();
-    let conventions = CandidateConventions { miss: command.miss, ignores_faces: command.no_faces };
-    let precision = command.arithmetic.unwrap_or(Precision::F64);
-    let checked = check_ray_pack(&command.pack, &command.candidate, precision, conventions, &spinner)?;
-    if let Some(folder) = &command.output {
-        write_ray_check(&checked, folder)?;
-    }
-    drop(spinner);
-    say(&match json {
-        true => format!("{:#}\n", ray_check_json(&checked)),
-        false => ray_check_text(&checked),
-    });
-    Ok(if checked.passes() { Outcome::Fine } else { Outcome::Differs })
-}
-
-/// Refuses options that concern maps of sensors alone.
-fn refuse_declared(command: &Check, kind: &str) -> Result<(), Trouble> {
-    if command.declared.is_empty() {
-        return Ok(());
-    }
+/// Refuses options that a pack of this form has no use for.
+fn refuse_declared(command: &Check) -> Result<(), Trouble> {
     let pack = command.pack.display();
-    Err(Trouble::Usage(format!(
-        "--channel, --scale: {pack} is a{} {kind}; expected neither",
-        if kind.starts_with('i') { "n" } else { "" }
-    )))
-}
-
-/// The same for an input pack, which asks for triangles.
-fn check_loader(command: &Check, json: bool) -> Result<Outcome, Trouble> {
-    let is_of_rays = command.arithmetic.is_some() || command.miss.is_some() || command.no_faces;
-    if is_of_rays {
-        let pack = command.pack.display();
-        let text = "--arithmetic, --miss and --no-faces declare how rays are answered; expected none of them";
-        return Err(Trouble::Usage(format!("{pack} is an input pack: {text}")));
+    let of_rays = command.arithmetic.is_some() || command.miss.is_some() || command.no_faces;
+    let of_sensors = !command.declared.is_empty();
+    let usage = |text: String| Err(Trouble::Usage(text));
+    match pack_form(&command.pack) {
+        PackForm::Triangles if of_rays => usage(format!(
+            "{pack} is an input pack: --arithmetic, --miss and --no-faces declare how rays are answered; expected none of them"
+        )),
+        PackForm::Triangles if of_sensors => usage(format!(
+            "--channel, --scale: {pack} is an input pack, which asks for triangles.npy; expected neither"
+        )),
+        PackForm::Rays if of_sensors => usage(format!(
+            "--channel, --scale: {pack} is a pack of rays, whose answers are NPY files of fixed names; expected neither"
+        )),
+        PackForm::Triangles | PackForm::Rays | PackForm::Sensors => Ok(()),
     }
-    refuse_declared(command, "input pack, which asks for triangles.npy")?;
-    let checked = check_input(&command.pack, &command.candidate)?;
-    if let Some(folder) = &command.output {
-        write_input_check(&checked, folder)?;
-    }
-    say(&if json { input_json(&checked) } else { input_screen(&checked) });
-    Ok(if checked.passes() { Outcome::Fine } else { Outcome::Differs })
 }

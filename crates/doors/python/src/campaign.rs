@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use pyo3::prelude::*;
 use raypencil::Progress;
 use raypencil::campaign::{
-    Campaign, CampaignProgress, OwnScenes, Shard, campaign_json, campaign_screen, has_result, merge,
-    run_shard, write_campaign,
+    Campaign, CampaignProgress, OwnScenes, Shard, campaign_document, has_result, merge, run_shard,
+    write_campaign,
 };
 
 use crate::failure::Failure;
@@ -98,7 +98,8 @@ impl CampaignCore {
             if let Some(folder) = &output {
                 write_campaign(&merged, folder)?;
             }
-            Ok((merged.passes(), campaign_screen(&merged), campaign_json(&merged)))
+            let document = campaign_document(&merged, |_| false);
+            Ok((merged.passes(), document.screen(), document.json()))
         });
         merged.map_err(|failure| failure.into_exception(py))
     }

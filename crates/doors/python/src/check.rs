@@ -4,15 +4,9 @@ use std::path::PathBuf;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use raypencil::cast::{
-    CandidateConventions, check_ray_pack, is_ray_pack, ray_check_json, ray_check_text, write_ray_check,
-};
-use raypencil::harness::{CheckedRaySet, check_packed_ray_sets};
+use raypencil::harness::{CheckedPack, check_any_pack, pack_form};
 use raypencil::judge::JudgeShare;
-use raypencil::pack::{
-    CheckError, Declarations, check_input, check_json, check_pack_by, check_screen, input_json, input_screen,
-    is_input_pack, write_check, write_input_check,
-};
+use raypencil::pack::{CheckError, Declarations, PackForm};
 
 use crate::array::Arrays;
 use crate::declared::declared;
@@ -41,88 +35,46 @@ struct Answer {
     shape: Vec<u64>,
 }
 
-fn of_input(question: &Question) -> Result<Answer, Failure> {
-    let Question { pack, candidate, output, declared, .. } = question;
-    if *declared != Declarations::default() {
-        return Err(Failure::new(format!(
-            "{} is an input pack: arithmetic, miss, no_faces, channels and scale declare how rays are answered; expected none \
-             of them",
-            pack.display()
-        )));
-    }
-    let checked = check_input(pack, candidate)?;
-    if let Some(folder) = output {
-        write_input_check(&checked, folder)?;
-    }
-    Ok(Answer {
-        kind: "input",
-        passes: checked.passes(),
-        text: input_screen(&checked),
-        json: input_json(&checked),
-        why: None,
-        arrays: Arrays::default(),
-        shape: Vec::new(),
-    })
-}
-
-fn of_rays(question: &Question, watch: &Watch) -> Result<Answer, Failure> {
-    let Question { pack, candidate, output, declared, .. } = question;
-    if !declared.channels.is_empty() || declared.scale.is_some() {
-        return Err(Failure::new(format!(
-            "{} is a pack of rays, whose answers have fixed names: expected neither channels nor scale",
-            pack.display()
-        )));
-    }
-    let conventions = CandidateConventions { miss: declared.miss, ignores_faces: declared.ignores_faces };
-    let precision = declared.precision();
-    let checked = check_ray_pack(pack, candidate, precision, conventions, watch)?;
-    if let Some(folder) = output {
-        write_ray_check(&checked, folder)?;
-    }
-    Ok(Answer {
-        kind: "rays",
-        passes: checked.passes(),
-        text: ray_check_text(&checked),
-        json: ray_check_json(&checked).to_string(),
-        arrays: verdict_arrays(&checked.comparison),
-        shape: checked.rays.shape.clone(),
-        why: checked.why,
-    })
-}
-
-fn of_scene(question: &Question, watch: &Watch) -> Result<Answer, Failure> {
-    let Question { pack, candidate, output, declared, share } = question;
-    let helped = |error: CheckError| Failure::with_help(&error, error.help());
-    let mut checked = check_pack_by(pack, candidate, declared, *share, watch).map_err(helped)?;
-    // The sets of rays that the pack has besides, if there are any.
-    let precision = checked.recorded.precision;
-    let declared = &checked.declared;
-    let of_rays = CandidateConventions { miss: declared.miss, ignores_faces: declared.ignores_faces };
-    let sets = check_packed_ray_sets(pack, candidate, precision, of_rays, watch)?;
-    checked.ray_sets = sets.iter().map(CheckedRaySet::outcome).collect();
-    let mut text = check_screen(&checked);
-    for CheckedRaySet { name, checked } in &sets {
-        text += &match checked {
-            Some(checked) => format!("\nrays {}", ray_check_text(checked)),
-            None => format!("\nrays {name}: not given\n"),
-        };
-    }
-    if let Some(folder) = output {
-        write_check(&checked, folder)?;
-        for CheckedRaySet { name, checked } in &sets {
-            if let Some(checked) = checked {
-                write_ray_check(checked, &folder.join("rays").join(name))?;
-            }
+/// Refuses what a pack of this form has no use for.
+fn refuse_declared(question: &Question) -> Result<(), Failure> {
+    let Question { pack, declared, .. } = question;
+    let pack = pack.display();
+    match pack_form(&question.pack) {
+        PackForm::Triangles if *declared != Declarations::default() => Err(Failure::new(format!(
+            "{pack} is an input pack: arithmetic, miss, no_faces, channels and scale declare how rays are answered; expected none \
+             of them"
+        ))),
+        PackForm::Rays if !declared.channels.is_empty() || declared.scale.is_some() => {
+            Err(Failure::new(format!(
+                "{pack} is a pack of rays, whose answers have fixed names: expected neither channels nor scale"
+            )))
         }
+        PackForm::Triangles | PackForm::Rays | PackForm::Sensors => Ok(()),
     }
+}
+
+fn answer(question: &Question, watch: &Watch) -> Result<Answer, Failure> {
+    refuse_declared(question)?;
+    let Question { pack, candidate, declared, share, output } = question;
+    let helped = |error: CheckError| Failure::with_help(&error, error.help());
+    let checked = check_any_pack(pack, candidate, declared, *share, watch).map_err(helped)?;
+    if let Some(folder) = output {
+        checked.write(folder)?;
+    }
+    let document = checked.document();
+    let (kind, arrays, shape) = match &checked {
+        CheckedPack::Sensors { .. } => ("scene", Arrays::default(), Vec::new()),
+        CheckedPack::Rays(of) => ("rays", verdict_arrays(&of.comparison), of.rays.shape.clone()),
+        CheckedPack::Triangles(_) => ("input", Arrays::default(), Vec::new()),
+    };
     Ok(Answer {
-        kind: "scene",
+        kind,
         passes: checked.passes(),
-        text,
-        json: check_json(&checked),
+        text: document.screen(),
+        json: document.json(),
         why: checked.why(),
-        arrays: Arrays::default(),
-        shape: Vec::new(),
+        arrays,
+        shape,
     })
 }
 
@@ -158,13 +110,7 @@ pub(crate) fn check<'py>(
         let named = declared(&channels, scale)?;
         let declared = Declarations { precision, miss, ignores_faces: no_faces, ..named };
         let question = Question { pack, candidate, declared, share, output };
-        if is_input_pack(&question.pack) {
-            of_input(&question)
-        } else if is_ray_pack(&question.pack) {
-            of_rays(&question, watch)
-        } else {
-            of_scene(&question, watch)
-        }
+        answer(&question, watch)
     })?;
     let dict = PyDict::new(py);
     dict.set_item("kind", answer.kind)?;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use pyo3::prelude::*;
 use raypencil::Progress;
-use raypencil::diff::{Sides, Thresholds, diff as compare, diff_json, diff_text, rule, write_diff};
+use raypencil::diff::{Sides, Thresholds, diff as compare, diff_document, rule, write_diff};
 use raypencil::harness::{Side, read_sides};
 use raypencil::judge::{GroundTruth, check as judge};
 use raypencil::pack::CheckError;
@@ -74,7 +74,7 @@ pub(crate) fn diff(
         if let Some(folder) = &output {
             write_diff(&difference, &sides, folder, watch)?;
         }
-        let text = diff_text(&difference, &sides, output.as_deref());
-        Ok((difference.passes(), text, diff_json(&difference, &sides)))
+        let document = diff_document(&difference, &sides);
+        Ok((difference.passes(), document.screen(), document.json()))
     })
 }

@@ -7,7 +7,7 @@ use pyo3::types::PyDict;
 use raypencil::Progress;
 use raypencil::sweep::{
     Axis, Cells, Chart, Part, Sweep, SweepProgress, SweepTable, Task, default_charts, finish, has_part,
-    run_part, sweep_json, sweep_screen, write_sweep,
+    run_part, sweep_document, write_sweep,
 };
 
 use crate::failure::Failure;
@@ -104,13 +104,9 @@ impl SweepCore {
             for chart in &charts {
                 all.push(Chart::parse(chart)?);
             }
-            let written = write_sweep(&table, &all, &output)?;
-            let texts = (
-                finished.passes(),
-                sweep_screen(&finished, &table, &written),
-                sweep_json(&finished, &table, &written),
-            );
-            Ok((texts, table))
+            let written = write_sweep(&finished, &table, &all, &output)?;
+            let document = sweep_document(&finished, &table, &written, &[]);
+            Ok(((finished.passes(), document.screen(), document.json()), table))
         });
         let ((passes, screen, json), table) = finished.map_err(|failure| failure.into_exception(py))?;
         let columns = PyDict::new(py);

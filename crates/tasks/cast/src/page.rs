@@ -2,11 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use askama::Template;
 use raypencil_explorer::{DifferingCell, RasterChannel, RasterGroup, RasterPage, SideKind};
 use raypencil_files::{FileError, write_atomically};
 use raypencil_judge::Class;
-use raypencil_report::{VERSION, count, described_words, page_head};
+use raypencil_report::{Block, Column, Document, Grid, Outcome, Room, count, described_words};
 use raypencil_scene::{CastRay, NamedRaySet, Side};
 
 use crate::answers::{Answers, FirstHit};
@@ -20,13 +19,20 @@ const MAX_CELLS: usize = 6_000_000;
 /// Maximum number of rays that a page describes in full.
 const MAX_DESCRIBED_RAYS: usize = 1000;
 
+/// How the numbers of a page are to be read.
+const NUMBERS: &str = "The numbers of this page are in single precision; the arrays beside it have all digits. Lengths are in the mesh's \
+                       own unit, which the scales call m.";
+
+/// Said where no ray is shown by itself.
+const TOO_MANY: &str = "The rays are too many to be shown one by one.";
+
 /// A cast as a page shows it.
 #[derive(Clone, Copy)]
 pub struct CastPage<'a> {
     /// What was asked, for the title: the name of the rays and of the mesh.
     pub title: &'a str,
     /// More about both: names and values.
-    pub facts: &'a [(&'a str, String)],
+    pub facts: &'a [(&'static str, String)],
     /// The rays' own shape.
     pub shape: &'a [u64],
     /// The rays.
@@ -55,36 +61,22 @@ pub struct ComparedHits<'a> {
 /// A number of a hit.
 type OfHit = fn(&FirstHit) -> f64;
 
-#[derive(Template)]
-#[template(path = "cast.html")]
-struct Page<'a> {
-    head: String,
-    /// Class of the verdict's colour; empty without a comparison.
-    colour: &'static str,
-    headline: String,
-    counts: String,
-    facts: &'a [(&'a str, String)],
-    layout: String,
-    left_out: String,
-    values: Vec<[String; 4]>,
-    pictures: Vec<(String, String)>,
-    version: &'a str,
-    explorer: String,
-}
-
 /// Writes `report.html` into a folder that is there. Returns its path.
 ///
 /// # Errors
 /// The file cannot be written; the message names it.
 pub fn write_cast_page(folder: &Path, page: &CastPage<'_>) -> Result<PathBuf, FileError> {
     let path = folder.join("report.html");
-    let html = page.html().map_err(|error| FileError::io(&path, "write", std::io::Error::other(error)))?;
+    let html = page
+        .document()
+        .page()
+        .map_err(|error| FileError::io(&path, "write", std::io::Error::other(error)))?;
     write_atomically(&path, |file| file.write_all(html.as_bytes()))?;
     Ok(path)
 }
 
 impl CastPage<'_> {
-    /// The page as HTML.
+    /// The document that every report prints.
     ///
     /// ```
     /// use raypencil_cast::{CastPage, Questions, cast, rays_from_bytes};
@@ -103,50 +95,72 @@ impl CastPage<'_> {
     ///     set: None,
     ///     compared: None,
     /// };
-    /// assert!(page.html()?.contains("<h1>two rays on &#60;a mesh&#62;</h1>"));
+    /// assert!(page.document().page()?.contains("<h1>two rays on &#60;a mesh&#62;</h1>"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    ///
-    /// # Errors
-    /// The template cannot be filled.
-    pub fn html(&self) -> Result<String, askama::Error> {
-        let (explorer, layout, left_out) = self.explorer().unwrap_or_else(|| {
-            (String::new(), "The rays are too many to be shown one by one.".into(), String::new())
-        });
-        let headline = match &self.compared {
-            Some(compared) => format!("{}: {}", compared.name, comparison_headline(compared.comparison)),
-            None => self.title.to_string(),
+    pub fn document(&self) -> Document {
+        let (explorer, mut notes) = self.explorer_with_notes();
+        notes.push(NUMBERS.into());
+        let (outcome, headline) = match &self.compared {
+            Some(ComparedHits { name, comparison, .. }) => {
+                let outcome = if comparison.passes() { Outcome::Agrees } else { Outcome::Fails };
+                (outcome, format!("{name}: {}", comparison_headline(comparison)))
+            }
+            None => (Outcome::Told, self.title.to_string()),
         };
-        let colour = match &self.compared {
-            Some(compared) if compared.comparison.passes() => "agree",
-            Some(_) => "defects",
-            None => "",
-        };
-        let values = self.compared.iter().flat_map(|compared| &compared.comparison.values);
-        let values = values.map(|tally| {
-            let worst = tally.worst.map(|(worst, at)| (format!("{worst:.3}"), at.to_string()));
-            let (worst, at) = worst.unwrap_or(("–".into(), "–".into()));
-            [tally.value.name().to_string(), count(tally.compared), worst, at]
-        });
         let drawings = self.set.map(|set| [range_picture(self.answers, set), top_picture(self.answers, set)]);
         let titles = ["Range of each ray", "Points from above"];
-        let pictures = drawings.into_iter().flatten().zip(titles);
-        Page {
-            head: page_head(&headline, ""),
-            colour,
+        let pictures = drawings.into_iter().flatten().zip(titles).filter_map(|(drawing, title)| {
+            let source = drawing?.data_uri();
+            Some(format!(
+                "<figure><img src=\"{source}\" alt=\"{title}\" style=\"max-width:100%;height:auto\"></figure>\n"
+            ))
+        });
+        let text = |lines| Block::Text { title: "", lines, room: Room::Everywhere };
+        Document {
+            run: format!("raypencil cast: {}", self.title),
+            question: self.title.to_string(),
+            outcome,
             headline,
-            counts: counts_text(self.answers),
-            facts: self.facts,
-            layout,
-            left_out,
-            values: values.collect(),
-            pictures: pictures
-                .filter_map(|(drawing, title)| Some((title.to_string(), drawing?.data_uri())))
-                .collect(),
-            version: VERSION,
+            remarks: vec![format!("{}.", counts_text(self.answers))],
+            facts: self.facts.to_vec(),
+            blocks: vec![
+                text(notes),
+                Block::Table { title: "Values where the face is the same", grid: self.values() },
+                Block::Pictures { title: "From the sensor", html: pictures.collect(), stays: true },
+            ],
+            suites: Vec::new(),
+            format: 1,
+            verdict: if outcome == Outcome::Fails { "defects" } else { "agrees" },
+            data: serde_json::Map::new(),
             explorer,
         }
-        .render()
+    }
+
+    /// The values that another program gives, with their worst errors.
+    fn values(&self) -> Grid {
+        let mut grid = Grid::new([
+            Column::text("value"),
+            Column::number("compared"),
+            Column::number("worst error / bound"),
+            Column::number("at ray"),
+        ]);
+        for tally in self.compared.iter().flat_map(|compared| &compared.comparison.values) {
+            let worst = tally.worst.map(|(worst, at)| (format!("{worst:.3}"), at.to_string()));
+            let (worst, at) = worst.unwrap_or_default();
+            grid.row([tally.value.name().to_string(), count(tally.compared), worst, at], false);
+        }
+        grid
+    }
+
+    /// The part that answers when asked, as HTML, and sentences on what it shows. Empty where the rays are too many.
+    pub(crate) fn explorer_with_notes(&self) -> (String, Vec<String>) {
+        match self.explorer() {
+            None => (String::new(), vec![TOO_MANY.into()]),
+            Some((html, layout, left_out)) => {
+                (html, [layout, left_out].into_iter().filter(|words| !words.is_empty()).collect())
+            }
+        }
     }
 
     /// Number of sides: the exact answers, and the other program's.

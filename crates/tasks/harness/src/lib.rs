@@ -57,6 +57,7 @@
 //! misses               a ray that a candidate answers wrongly, as a pack of that ray
 //! ray_sets             rays of no sensor: the tracer against the exact answers
 //! ray_set_packs        the same in packs of scenes
+//! any_pack             a candidate against a pack of any form
 //! validation           all results of one scene
 //! run                  `validate`: from a scene to its validation
 //! output/table         the table of quantities and classes
@@ -73,6 +74,7 @@
 //! output/folder        the folder with all of these and the maps
 //! ```
 
+mod any_pack;
 mod candidate;
 mod estimate;
 mod hunt;
@@ -93,6 +95,7 @@ mod scoreboard;
 mod sides;
 mod validation;
 
+pub use any_pack::{CheckedPack, check_any_pack, pack_form};
 pub use candidate::{Candidate, CandidateError, RadianceMap};
 pub use estimate::{Estimate, MonteCarloImage};
 pub use hunt::{JudgedCandidate, judge_candidate};

@@ -6,10 +6,10 @@
 use std::path::{Path, PathBuf};
 
 use raypencil_cast::{
-    CandidateConventions, RayPackChecked, RayPackCounts, check_ray_pack, comparison_headline, write_ray_pack,
+    CandidateConventions, RayPackChecked, RayPackCounts, check_ray_pack, ray_pack_len, write_ray_pack,
 };
 use raypencil_files::{FileError, RayArray};
-use raypencil_pack::{FileRole, Manifest, ManifestFile, PackError, PackLabel, RaySetOutcome, write_pack};
+use raypencil_pack::{BundleFindings, FileRole, Manifest, ManifestFile, PackError, PackLabel, write_pack};
 use raypencil_scene::{NamedRaySet, Precision, Progress, Triangles};
 use raypencil_scene_io::Subject;
 
@@ -32,18 +32,19 @@ pub struct PackedRaySet {
 pub struct CheckedRaySet {
     /// Name of the set.
     pub name: String,
+    /// Number of its rays.
+    pub rays: u64,
     /// The check; `None`: the candidate has no folder `rays/NAME`.
     pub checked: Option<RayPackChecked>,
 }
 
 impl CheckedRaySet {
-    /// What became of it. What a candidate does not give is no mistake.
-    pub fn outcome(&self) -> RaySetOutcome {
-        let words = |checked: &RayPackChecked| comparison_headline(&checked.comparison);
-        RaySetOutcome {
-            name: self.name.clone(),
-            passes: self.checked.as_ref().map(RayPackChecked::passes),
-            words: self.checked.as_ref().map_or_else(|| "not given".into(), words),
+    /// What became of it, as a bundle. What a candidate does not give is no mistake.
+    pub fn bundle(&self) -> BundleFindings {
+        let name = format!("rays/{}", self.name);
+        match &self.checked {
+            Some(checked) => checked.bundle(&name),
+            None => BundleFindings::not_given(name, self.rays),
         }
     }
 }
@@ -112,7 +113,8 @@ pub fn check_packed_ray_sets(
         let checked = given
             .is_dir()
             .then(|| check_ray_pack(&pack.join(path_of(name)), &given, precision, conventions, progress));
-        Ok(CheckedRaySet { name: name.to_string(), checked: checked.transpose()? })
+        let rays = ray_pack_len(&pack.join(path_of(name)))?;
+        Ok(CheckedRaySet { name: name.to_string(), rays, checked: checked.transpose()? })
     };
     names.map(check).collect()
 }

@@ -13,6 +13,7 @@ use raypencil_scene::{Place, Precision, Progress, Scene, SensorId};
 use raypencil_scene_io::{LoadedScene, SceneIoError, Subject, probe_command, quoted, scene_sha256};
 
 use crate::blind::blind_scene;
+use crate::check_report::BundleFindings;
 use crate::declarations::Declarations;
 use crate::manifest::{FileRole, MANIFEST_NAME, Manifest, PackKind};
 use crate::provenance::{ProvenanceError, note};
@@ -78,8 +79,9 @@ pub struct Checked {
     pub verified: Verified,
     /// What was declared about the candidate, by its note, too.
     pub declared: Declarations,
-    /// The sets of rays of the pack, which are checked apart; empty if it has none, or if nobody asked.
-    pub ray_sets: Vec<RaySetOutcome>,
+    /// The sets of rays of the pack, which are checked apart; empty if it has none, or if nobody asked. One without items is not
+    /// given.
+    pub ray_sets: Vec<BundleFindings>,
 }
 
 /// What of a pack was verified. Anyone can change an answer and write the digests anew; the scene alone decides.
@@ -93,21 +95,10 @@ pub struct Verified {
     pub rays: u64,
 }
 
-/// What became of a set of rays.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct RaySetOutcome {
-    /// Name of the set.
-    pub name: String,
-    /// Whether no ray of it is wrong; `None`: the candidate has no folder `rays/NAME`.
-    pub passes: Option<bool>,
-    /// The result in a sentence.
-    pub words: String,
-}
-
 impl Checked {
     /// Whether the candidate agrees on a pack in which something is hit, and on its sets of rays.
     pub fn passes(&self) -> bool {
-        let sets_pass = self.ray_sets.iter().all(|set| set.passes != Some(false));
+        let sets_pass = self.ray_sets.iter().all(|set| set.passes());
         self.check.passes() && self.hits_anything() && sets_pass
     }
 

@@ -18,20 +18,20 @@
 //! declarations -> check              what is declared about a candidate, also in its note; the check of a candidate
 //! published                          version and licence of a pack, and the packs that are published
 //! input/                             a glTF file, the triangles that it must become, and the check of a loader
-//! check_report/                      a check as screen, page, JSON and JUnit
+//! check_report/                      a check in its one form, which every report prints
 //! ```
 //!
 //! ```
 //! use std::path::Path;
 //!
-//! use raypencil_pack::{check_pack, check_screen};
+//! use raypencil_pack::check_pack;
 //! use raypencil_scene::Silent;
 //!
 //! // A pack is a perfect candidate: all rays agree exactly. 7,936 are those of the scene, and 2,242 of the bench.
 //! let pack = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../data/packs/pyramids");
 //! let checked = check_pack(&pack, &pack, None, &Silent)?;
 //! assert_eq!(checked.check.compared(), 96 * 72 + 2 * 128 * 4 + 2242);
-//! assert!(check_screen(&checked).contains("✓ 10,178 rays agree with the exact answers: 10,178 exact"));
+//! assert!(checked.document().screen().contains("✓ 10,178 rays agree with the exact answers: 10,178 exact"));
 //! # Ok::<(), raypencil_pack::CheckError>(())
 //! ```
 
@@ -57,16 +57,16 @@ mod write;
 
 pub use bench::{BENCH_BEAMS, benched, with_bench};
 pub use blind::{blind_scene, blind_subject};
-pub use check::{CheckError, Checked, RaySetOutcome, Verified, check_pack, check_pack_by};
+pub use check::{CheckError, Checked, Verified, check_pack, check_pack_by};
 pub use check_report::{
-    check_json, check_page, check_screen, check_suite, items_not_given, not_given, rays_not_given,
-    write_check,
+    BundleFindings, CheckFindings, ItemFindings, PackForm, WorstOf, WrongRay, check_suite, items_not_given,
+    not_given, rays_not_given, write_document,
 };
 pub use clauses::{ClauseRays, MIN_RAYS_PER_CLAUSE, can_count_clauses, clause_rays};
 pub use declarations::Declarations;
 pub use input::{
-    InputChecked, InputFace, LoadingClause, WrongFace, check_input, input_faces, input_glb, input_json,
-    input_screen, is_input_pack, write_input, write_input_check,
+    InputChecked, InputFace, LoadingClause, WrongFace, check_input, input_faces, input_glb, is_input_pack,
+    write_input,
 };
 pub use manifest::{
     ChannelType, FileRole, FileType, MANIFEST_FORMAT, Manifest, ManifestChannel, ManifestClause,

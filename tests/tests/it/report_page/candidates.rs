@@ -4,7 +4,7 @@ use std::path::Path;
 
 use raypencil::harness::{Candidate, Contender, contender, validate, write_validation};
 use raypencil::judge::JudgeShare;
-use raypencil::pack::{PackLabel, check_pack, write_check, write_pack};
+use raypencil::pack::{PackLabel, check_pack, write_document, write_pack};
 use raypencil::{Maybe, Precision, RenderOutput, Renderer, Request, Scene, Silent, Tracer};
 use raypencil_tests::fixtures;
 
@@ -94,6 +94,7 @@ fn every_wrong_ray_of_a_candidate_has_its_words() {
     let checked = checked.expect("a check");
     assert!(!checked.passes());
     let pages = tempfile::tempdir().expect("a folder");
-    write_check(&checked, pages.path()).expect("a report");
+    let document = checked.document_with_pictures().expect("pictures");
+    write_document(&document, pages.path()).expect("a report");
     assert_each_has_words(&pages.path().join("report.html"), width, "raypencil probe ");
 }

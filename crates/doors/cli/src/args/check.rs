@@ -51,7 +51,7 @@ pub(crate) struct Check {
     #[arg(long)]
     pub(crate) verify: bool,
 
-    /// Folder for report.html, junit.xml and check.json; without it none are written.
+    /// Folder for report.html, junit.xml, summary.md and check.json; without it none are written.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
 }

@@ -155,7 +155,7 @@ def check(
         verify: of a pack of a scene, compare every answer of the pack with the referee's; without it a sample, and each
             by which a ray is wrong. The text says how many were.
         name: what messages call answers that are no folder.
-        output: a folder for ``report.html``, ``junit.xml`` and ``check.json``.
+        output: a folder for ``report.html``, ``junit.xml``, ``summary.md`` and ``check.json``.
         progress: see :func:`cast`.
 
     Raises:

@@ -23,8 +23,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use raypencil::Silent;
 use raypencil::drive::{
-    DriveExtras, DriveJob, DriveProgress, DriveRun, RecordContents, drive_json, drive_screen, drive_with,
-    write_drive,
+    DriveExtras, DriveJob, DriveProgress, DriveRun, RecordContents, drive_document, drive_with, write_drive,
 };
 use raypencil::io::{DriveSetup, WaypointFrame};
 
@@ -156,8 +155,8 @@ fn finish(job: &DriveJob, run: &DriveRun, output: Option<&PathBuf>) -> Result<En
     if let Some(folder) = output {
         write_drive(job, run, folder, &Silent)?;
     }
-    let text = drive_screen(job, run, output.map(PathBuf::as_path));
-    Ok(Ended { passes: run.passes(), text, json: drive_json(job, run) })
+    let document = drive_document(job, run);
+    Ok(Ended { passes: run.passes(), text: document.screen(), json: document.json() })
 }
 
 #[pymethods]

@@ -19,6 +19,8 @@ pub struct RayPackChecked {
     pub name: String,
     /// The folder of the pack, as it was given.
     pub pack: String,
+    /// SHA-256 of its `raypack.json`, which has the digest of every other file.
+    pub pack_sha256: String,
     /// What became of its rays.
     pub comparison: Comparison,
     /// What explains why it is wrong, as one sentence. It changes no verdict.
@@ -82,7 +84,7 @@ pub fn check_ray_pack(
     progress: &dyn Progress,
 ) -> Result<RayPackChecked, FileError> {
     progress.stage(&format!("{}: reading", pack.display()));
-    let RayPack { mesh, rays, sides } = RayPack::read(pack)?;
+    let RayPack { mesh, rays, sides, sha256: pack_sha256 } = RayPack::read(pack)?;
     let stated = read_candidate(candidate, &rays.shape, conventions)?;
     let exact = ExactCast::new(&mesh);
     progress.stage(&format!("comparing {} rays", rays.rays.len()));
@@ -97,6 +99,7 @@ pub fn check_ray_pack(
     Ok(RayPackChecked {
         name,
         pack: pack.display().to_string(),
+        pack_sha256,
         why: why.flatten().map(|explanation| explanation.sentence()),
         fronts_only: sides == raypencil_scene::Sides::Fronts,
         comparison,

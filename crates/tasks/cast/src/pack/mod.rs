@@ -6,7 +6,7 @@
 //! candidate   another program's arrays
 //! mistakes    what a candidate may do otherwise, undone one by one and two by two
 //! check       a candidate against a pack
-//! report      the check on a screen and for programs
+//! report      the check in the form of every check
 //! ```
 
 mod candidate;
@@ -18,8 +18,7 @@ mod write;
 
 pub use candidate::CandidateConventions;
 pub use check::{RayPackChecked, check_ray_pack};
-pub use read::is_ray_pack;
-pub use report::{ray_check_json, ray_check_text, write_ray_check};
+pub use read::{is_ray_pack, ray_pack_len};
 pub use write::{RayPackCounts, write_ray_pack};
 
 /// File that marks a pack of rays. It is written last.

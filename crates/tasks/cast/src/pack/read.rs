@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use raypencil_files::{Fault, FileError, RayArray, bytes, file_sha256_hex, read_rays};
+use raypencil_files::{Fault, FileError, RayArray, bytes, file_sha256_hex, hex_digits, read_rays, sha256};
 use raypencil_mesh_io::load_triangles;
 use raypencil_scene::{Sides, Triangles};
 use serde::Deserialize;
@@ -14,6 +14,8 @@ pub(super) struct RayPack {
     pub(super) mesh: Triangles,
     pub(super) rays: RayArray,
     pub(super) sides: Sides,
+    /// SHA-256 of `raypack.json`.
+    pub(super) sha256: String,
 }
 
 /// What is read of `raypack.json`.
@@ -36,6 +38,14 @@ pub fn is_ray_pack(folder: &Path) -> bool {
     folder.join(PACK_NAME).is_file()
 }
 
+/// Number of rays of a pack.
+///
+/// # Errors
+/// As `check_ray_pack`.
+pub fn ray_pack_len(folder: &Path) -> Result<u64, FileError> {
+    Ok(RayPack::read(folder)?.rays.rays.len() as u64)
+}
+
 fn fault(path: &Path, place: &str, found: impl Into<String>, expected: impl Into<String>) -> FileError {
     FileError::Array(Fault::new(place, found, expected).in_file(path))
 }
@@ -45,6 +55,7 @@ impl RayPack {
     pub(super) fn read(folder: &Path) -> Result<Self, FileError> {
         let path = folder.join(PACK_NAME);
         let text = bytes::read_file(&path, 1 << 20).map_err(|error| FileError::io(&path, "read", error))?;
+        let sha256 = hex_digits(&sha256(&text));
         let document: Document = serde_json::from_slice(&text).map_err(|error| {
             fault(&path, "document", error.to_string(), "what `raypencil pack --rays` writes")
         })?;
@@ -64,16 +75,16 @@ impl RayPack {
                 return Err(fault(&path, "files", format!("no {question}"), "its path and SHA-256"));
             };
             let file = folder.join(question);
-            let (_, sha256) = file_sha256_hex(&file).map_err(|error| FileError::io(&file, "read", error))?;
-            if sha256 != listed.sha256 {
+            let (_, found) = file_sha256_hex(&file).map_err(|error| FileError::io(&file, "read", error))?;
+            if found != listed.sha256 {
                 return Err(fault(
                     &file,
                     "SHA-256",
-                    sha256,
+                    found,
                     format!("{}, as {PACK_NAME} says", listed.sha256),
                 ));
             }
         }
-        Ok(Self { mesh: load_triangles(folder)?, rays: read_rays(&folder.join("rays.npy"))?, sides })
+        Ok(Self { mesh: load_triangles(folder)?, rays: read_rays(&folder.join("rays.npy"))?, sides, sha256 })
     }
 }

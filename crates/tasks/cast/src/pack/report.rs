@@ -1,72 +1,196 @@
-//! A check of a pack of rays on a screen, for programs and for continuous integration.
+//! A check of a pack of rays in the form of every check.
 
-use std::path::Path;
-
-use raypencil_files::{FolderError, begin_output_folder, write_atomically};
-use raypencil_report::{JunitCase, JunitReport, JunitSuite, VERSION};
-use serde_json::{Value, json};
+use raypencil_judge::Class;
+use raypencil_pack::{BundleFindings, CheckFindings, ItemFindings, PackForm, PackLabel, WorstOf, WrongRay};
+use raypencil_report::{DefectLine, Document};
+use raypencil_scene::{FaceId, Reading};
+use serde_json::{Map, Value, json};
 
 use super::check::RayPackChecked;
-use crate::comparison::{comparison_headline, comparison_json, comparison_text};
-use crate::page::{CastPage, ComparedHits, write_cast_page};
+use crate::comparison::{CastValue, Wrong, wrong_text};
+use crate::page::{CastPage, ComparedHits};
 
-/// The check on one screen.
-pub fn ray_check_text(checked: &RayPackChecked) -> String {
-    let RayPackChecked { name, comparison, why, .. } = checked;
-    let mut text = comparison_text(name, comparison, |index| checked.ray_command(index));
-    if let Some(why) = why {
-        text += &format!("  Why: {why}.\n");
+/// Wrong rays that are listed, at most.
+const MAX_LISTED: usize = 12;
+
+/// Key of the first hits, beside those of the values.
+const HIT: &str = "hit";
+
+impl RayPackChecked {
+    /// The check for a screen and for programs.
+    pub fn document(&self) -> Document {
+        self.findings().document()
     }
-    text
+
+    /// The same with the pictures of its page, and the part that answers when asked.
+    pub fn document_with_pictures(&self) -> Document {
+        let title = format!("{} on {}", self.name, self.pack);
+        let page = CastPage {
+            title: &title,
+            facts: &[],
+            shape: &self.rays.shape,
+            rays: &self.rays.rays,
+            answers: &self.answers,
+            set: None,
+            compared: Some(ComparedHits {
+                name: &self.name,
+                stated: &self.stated,
+                comparison: &self.comparison,
+                ray_command: &|index| self.ray_command(index),
+            }),
+        };
+        let (explorer, notes) = page.explorer_with_notes();
+        let mut findings = self.findings();
+        findings.notes.extend(notes);
+        CheckFindings { explorer, ..findings }.document()
+    }
+
+    fn findings(&self) -> CheckFindings {
+        let bundle = self.bundle("rays");
+        CheckFindings {
+            form: PackForm::Rays,
+            pack: self.pack.clone(),
+            pack_remark: "",
+            pack_sha256: self.pack_sha256.clone(),
+            label: PackLabel::NONE,
+            is_published: false,
+            candidate: self.name.clone(),
+            arithmetic: Some(self.comparison.precision),
+            totals: bundle.items.clone(),
+            worst: bundle.listed.iter().map(|wrong| wrong.line.clone()).collect(),
+            hits_anything: self.comparison.met > 0,
+            coarseness: None,
+            headline: None,
+            why: self.why.clone(),
+            notes: Vec::new(),
+            facts: Vec::new(),
+            of_form: Map::new(),
+            pictures: String::new(),
+            explorer: String::new(),
+            bundles: vec![bundle],
+        }
+    }
+
+    /// The rays as a bundle of this name.
+    pub fn bundle(&self, name: &str) -> BundleFindings {
+        let counts = self.comparison.counts();
+        let mut by_class = [0; Class::COUNT];
+        by_class[Class::Agree as usize] = counts.same - counts.ties;
+        by_class[Class::Tie as usize] = counts.ties;
+        by_class[Class::Rounding as usize] = counts.rounding;
+        by_class[Class::Defect as usize] = counts.wrong;
+        let wrong_in = |value: CastValue| {
+            let is_of = |wrong: &Wrong| matches!(wrong, Wrong::Value { value: of, .. } if *of == value);
+            self.comparison.wrong().filter(|(_, wrong)| is_of(wrong)).count() as u64
+        };
+        // A ray with a wrong value has the right hit.
+        let wrong_values: u64 = CastValue::ALL.into_iter().map(wrong_in).sum();
+        let mut of_hits = by_class;
+        of_hits[Class::Defect as usize] -= wrong_values;
+        of_hits[Class::Agree as usize] += wrong_values;
+        let hits = ItemFindings {
+            key: HIT.into(),
+            name: "first hit".into(),
+            unit: "",
+            storage: None,
+            not_given: None,
+            by_class: of_hits,
+            not_compared: 0,
+            worst_ulp: None,
+            worst_error: None,
+            worst_ratio: None,
+        };
+        let values = self.comparison.values.iter().map(|tally| {
+            let wrong = wrong_in(tally.value);
+            let mut by_class = [0; Class::COUNT];
+            by_class[Class::Defect as usize] = wrong;
+            by_class[Class::Agree as usize] = tally.compared.saturating_sub(wrong);
+            let worst_ratio = tally.worst.map(|(value, index)| WorstOf {
+                value,
+                place: format!("{name} {index}"),
+                bundle: name.into(),
+                ray: vec![index as u64],
+                ruling: None,
+                command: self.ray_command(index),
+            });
+            ItemFindings {
+                key: tally.value.name().into(),
+                name: tally.value.name().into(),
+                by_class,
+                worst_ratio,
+                ..hits.clone()
+            }
+        });
+        let listed = self.comparison.wrong().take(MAX_LISTED);
+        BundleFindings {
+            name: name.into(),
+            by_class,
+            not_compared: 0,
+            ruled: counts.rounding + counts.wrong,
+            items: std::iter::once(hits.clone()).chain(values).collect(),
+            listed: listed.map(|(index, wrong)| self.wrong_ray(name, index, &wrong)).collect(),
+            why: self.why.clone(),
+        }
+    }
+
+    /// A wrong ray, for people and for programs.
+    fn wrong_ray(&self, bundle: &str, index: usize, wrong: &Wrong) -> WrongRay {
+        let key = match wrong {
+            Wrong::Value { value, .. } => value.name(),
+            _ => HIT,
+        };
+        let command = self.ray_command(index);
+        let words = wrong_text(wrong);
+        let (said, exact) = said_and_true(wrong);
+        let (difference, ratio) = match wrong {
+            Wrong::Value { error, bound, .. } => (Some(*error), Some(error / bound)),
+            _ => (None, None),
+        };
+        let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
+        WrongRay {
+            key: key.into(),
+            data: json!({
+                "bundle": bundle,
+                "ray": [index],
+                "quantity": key,
+                "said": [{ "who": self.name, "value": said }],
+                "true": exact,
+                "difference": finite(difference),
+                "difference_unit": "",
+                "ratio": finite(ratio),
+                "margin": Value::Null,
+                "what": words,
+                "command": command,
+            }),
+            line: DefectLine {
+                place: format!("{bundle} {index}"),
+                quantity: if key == HIT { "first hit".into() } else { key.into() },
+                words,
+                command,
+                ..DefectLine::default()
+            },
+        }
+    }
 }
 
-/// The check for programs.
-pub fn ray_check_json(checked: &RayPackChecked) -> Value {
-    json!({
-        "format": 1,
-        "kind": "rays",
-        "raypencilVersion": VERSION,
-        "pack": checked.pack,
-        "candidate": comparison_json(&checked.name, &checked.comparison),
-        "why": checked.why,
-    })
-}
-
-/// Writes `junit.xml`, `report.html` and last `check.json`.
-///
-/// # Errors
-/// The folder or a file cannot be written; the message names it.
-pub fn write_ray_check(checked: &RayPackChecked, folder: &Path) -> Result<(), FolderError> {
-    let last = begin_output_folder(folder, "check.json")?;
-    let mut suite = JunitSuite::new(format!("{} against {}", checked.name, checked.pack));
-    let headline = comparison_headline(&checked.comparison);
-    suite.push(match checked.passes() {
-        true => JunitCase::passed("first hits"),
-        false => JunitCase::failed("first hits", "wrong", headline).with_text(ray_check_text(checked)),
-    });
-    let mut report = JunitReport::new(format!("raypencil check {}", checked.pack));
-    report.push(suite);
-    let path = folder.join("junit.xml");
-    let xml = report.to_xml().map_err(|error| raypencil_files::FileError::io(&path, "write", error))?;
-    write_atomically(&path, |file| file.write_all(xml.as_bytes()))?;
-    let title = format!("{} on {}", checked.name, checked.pack);
-    let mut facts = vec![("pack", checked.pack.clone()), ("candidate", checked.name.clone())];
-    facts.extend(checked.why.iter().map(|why| ("why", why.clone())));
-    let page = CastPage {
-        title: &title,
-        facts: &facts,
-        shape: &checked.rays.shape,
-        rays: &checked.rays.rays,
-        answers: &checked.answers,
-        set: None,
-        compared: Some(ComparedHits {
-            name: &checked.name,
-            stated: &checked.stated,
-            comparison: &checked.comparison,
-            ray_command: &|index| checked.ray_command(index),
-        }),
+/// What is stated, and what is exact if that is one thing.
+fn said_and_true(wrong: &Wrong) -> (String, Option<String>) {
+    let face = |read: &Reading<FaceId>| match read {
+        Reading::Hit(face) => format!("face {}", face.0),
+        Reading::TooNear => "too near".into(),
+        Reading::Miss => "no hit".into(),
     };
-    write_cast_page(folder, &page)?;
-    let document = ray_check_json(checked);
-    Ok(write_atomically(&last, |file| file.write_all(format!("{document:#}\n").as_bytes()))?)
+    match wrong {
+        Wrong::Hit { stated, exact } => (face(stated), Some(face(exact))),
+        Wrong::Distance { stated, exact } => (
+            stated.to_string(),
+            Some(match exact {
+                Reading::Hit(exact) => exact.to_string(),
+                Reading::TooNear => "too near".into(),
+                Reading::Miss => "no hit".into(),
+            }),
+        ),
+        Wrong::Contradiction => ("too near in one of t and range".into(), None),
+        Wrong::Value { value, .. } => (value.name().into(), None),
+    }
 }

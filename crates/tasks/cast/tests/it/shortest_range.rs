@@ -3,8 +3,8 @@
 use glam::DVec3;
 use raypencil_cast::{
     Answers, CandidateConventions, CastSource, Questions, RayArray, RayPackChecked, Stated, cast,
-    check_ray_pack, compare, comparison_text, counts_text, range_picture, ray_check_text, ray_text,
-    write_answers, write_ray_pack, write_set,
+    check_ray_pack, compare, comparison_text, counts_text, range_picture, ray_text, write_answers,
+    write_ray_pack, write_set,
 };
 use raypencil_files::{read_npy_numbers, read_rays, write_npy_numbers};
 use raypencil_scene::pattern::{Cone, GRID_PRESETS, Grid, PatternRays, SPINNING_PRESETS, Spinning};
@@ -193,7 +193,7 @@ impl Folders {
     fn expect_wrong(&self, wrong: u64, words: &str, why: &str) {
         let checked = self.check();
         assert_eq!((checked.passes(), checked.comparison.counts().wrong), (false, wrong));
-        let shown = ray_check_text(&checked);
+        let shown = checked.document().screen();
         assert!(shown.contains(words) && shown.contains(why), "{shown}");
     }
 }

@@ -10,7 +10,7 @@ use raypencil_report::described_words;
 use raypencil_scene::{Image, Place, Sampling, SensorId};
 
 use crate::check::Checked;
-use crate::check_report::verdict::arithmetic;
+use crate::check_report::findings::arithmetic;
 
 /// Indices of the sides.
 const EXACT: usize = 0;

@@ -1,26 +1,20 @@
-//! Reports of a check: for people at a terminal, for programs, and for CI.
+//! What is told of a check: one form for all packs, from which every report is made.
 //!
 //! ```text
-//! verdict    the words that the reports share
-//! screen     one terminal screen
-//! json       check.json
-//! junit      junit.xml
-//! explorer   the part of report.html that answers when asked
-//! page       report.html
-//! folder     all files in a folder
+//! findings   bundles, items and wrong rays; their document, which `raypencil-report` prints
+//! given      what a candidate gives, what it does not, and in which type
+//! sensors    a check of sensors in that form
+//! explorer   the part of its page that answers when asked
+//! folder     the files of a check
 //! ```
 
 mod explorer;
+mod findings;
 mod folder;
-mod json;
-mod junit;
-mod page;
-mod screen;
-mod verdict;
+mod given;
+mod sensors;
 
-pub use folder::write_check;
-pub use json::check_json;
-pub use junit::check_suite;
-pub use page::check_page;
-pub use screen::check_screen;
-pub use verdict::{items_not_given, not_given, rays_not_given};
+pub use findings::{BundleFindings, CheckFindings, ItemFindings, PackForm, WorstOf, WrongRay};
+pub use folder::write_document;
+pub use given::{items_not_given, not_given, rays_not_given};
+pub use sensors::check_suite;

@@ -30,6 +30,8 @@ pub struct WrongFace {
 pub struct InputChecked {
     /// Name of the candidate: that of its folder.
     pub name: String,
+    /// SHA-256 of the pack's `input.json`.
+    pub pack_sha256: String,
     /// Number of faces that the file has.
     pub faces: usize,
     /// Number of faces that the loader gave.
@@ -97,8 +99,12 @@ pub fn check_input(pack: &Path, candidate: &Path) -> Result<InputChecked, FileEr
         }
     }
     let name = candidate.file_name().map_or_else(|| ".".into(), |name| name.to_string_lossy().into_owned());
+    let listing = pack.join(INPUT_NAME);
+    let (_, pack_sha256) =
+        file_sha256_hex(&listing).map_err(|error| FileError::io(&listing, "read", error))?;
     Ok(InputChecked {
         name,
+        pack_sha256,
         faces: truth.len(),
         given: corners.len(),
         has_reflectivity: reflectivity.is_some(),

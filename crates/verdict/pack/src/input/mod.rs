@@ -7,7 +7,7 @@
 //! ```text
 //! clause                       what a loader must do, one clause for each part of the file
 //! gltf_document -> ground      the file; the triangles of each part, by a closed form of its own
-//! write, check -> report       the files of an input pack; a loader's triangles against them; the report
+//! write, check -> report       the files of an input pack; a loader's triangles against them, in the form of every check
 //! ```
 
 mod check;
@@ -20,5 +20,4 @@ mod write;
 pub use check::{InputChecked, WrongFace, check_input, is_input_pack};
 pub use clause::LoadingClause;
 pub use ground::{InputFace, input_faces, input_glb};
-pub use report::{input_json, input_screen, write_input_check};
 pub use write::write_input;

@@ -1,118 +1,122 @@
-//! The report on a loader's triangles: for the screen, and as JSON and JUnit.
+//! A check of a loader's triangles in the form of every check.
 
-use std::io;
-use std::path::{Path, PathBuf};
-
-use raypencil_files::{FileError, FolderError, begin_output_folder, write_atomically};
-use raypencil_report::{Align, JunitCase, JunitReport, JunitSuite, Table, counted};
+use raypencil_judge::Class;
+use raypencil_report::{DefectLine, Document, counted};
 use serde_json::{Value, json};
 
+use crate::check_report::{BundleFindings, CheckFindings, ItemFindings, PackForm, WrongRay};
 use crate::input::check::{InputChecked, WrongFace};
 use crate::input::clause::LoadingClause;
+use crate::published::PackLabel;
 
-/// The report for a screen: a row for each clause, the first wrong face, and the verdict.
-pub fn input_screen(checked: &InputChecked) -> String {
-    let version = env!("CARGO_PKG_VERSION");
-    let mut table = Table::new([Align::Left, Align::Right, Align::Right]);
-    table.row(["clause", "faces", "wrong"]);
-    for clause in LoadingClause::ALL {
+/// Wrong faces that are listed, at most.
+const MAX_LISTED: usize = 12;
+
+impl InputChecked {
+    /// The check for every report.
+    pub fn document(&self) -> Document {
+        findings(self).document()
+    }
+}
+
+fn findings(checked: &InputChecked) -> CheckFindings {
+    let item = |clause: &LoadingClause| {
         let (faces, wrong) = checked.of(*clause);
-        let tested = if faces == 0 { "-".into() } else { faces.to_string() };
-        table.row([clause.key().to_string(), tested, wrong.to_string()]);
-    }
-    let mut text =
-        format!("raypencil {version}: {} against the triangles of the input pack\n\n{table}\n", checked.name);
-    if let Some(first) = checked.wrong.first() {
-        text += &format!("{}\n", of_face(first));
-    }
-    text += &match checked.has_reflectivity {
-        true => String::new(),
-        false => "Reflectivities are not given.\n".to_string(),
-    };
-    text += &verdict(checked);
-    text.push('\n');
-    text
-}
-
-/// What is wrong with a face, in one sentence.
-fn of_face(wrong: &WrongFace) -> String {
-    let WrongFace { face, truth, corners, reflectivity } = wrong;
-    let clause = format!("face {face}, `{}` ({})", truth.clause.key(), truth.clause.sentence());
-    match (corners, reflectivity) {
-        (None, _) => format!("{clause} is missing, true is {:?}", truth.corners),
-        (Some(_), Some(said)) => {
-            format!("{clause} has the reflectivity {said}, true is {}", truth.reflectivity)
+        let mut by_class = [0; Class::COUNT];
+        by_class[Class::Defect as usize] = wrong as u64;
+        by_class[Class::Agree as usize] = faces.saturating_sub(wrong) as u64;
+        ItemFindings {
+            key: clause.key().into(),
+            name: clause.key().into(),
+            unit: "",
+            storage: None,
+            not_given: None,
+            by_class,
+            not_compared: 0,
+            worst_ulp: None,
+            worst_error: None,
+            worst_ratio: None,
         }
-        (Some(said), None) => format!("{clause} has the corners {said:?}, true are {:?}", truth.corners),
+    };
+    let items: Vec<ItemFindings> = LoadingClause::ALL.iter().map(item).collect();
+    let by_class = std::array::from_fn(|k| items.iter().map(|item| item.by_class[k]).sum());
+    let listed: Vec<WrongRay> = checked.wrong.iter().take(MAX_LISTED).map(wrong_face).collect();
+    let bundle = BundleFindings {
+        name: "triangles".into(),
+        by_class,
+        not_compared: 0,
+        ruled: checked.wrong.len() as u64,
+        items: items.clone(),
+        listed: listed.clone(),
+        why: None,
+    };
+    let reflectivity = match checked.has_reflectivity {
+        true => None,
+        false => Some("Reflectivities are not given.".to_string()),
+    };
+    CheckFindings {
+        form: PackForm::Triangles,
+        pack: "input".into(),
+        pack_remark: "",
+        pack_sha256: checked.pack_sha256.clone(),
+        label: PackLabel::NONE,
+        is_published: false,
+        candidate: checked.name.clone(),
+        arithmetic: None,
+        bundles: vec![bundle],
+        totals: items,
+        worst: listed.into_iter().map(|wrong| wrong.line).collect(),
+        hits_anything: true,
+        coarseness: None,
+        headline: Some(headline(checked)),
+        why: None,
+        notes: reflectivity.into_iter().collect(),
+        facts: vec![("Faces given", checked.given.to_string())],
+        of_form: serde_json::Map::new(),
+        pictures: String::new(),
+        explorer: String::new(),
     }
 }
 
-/// The verdict in one line.
-fn verdict(checked: &InputChecked) -> String {
+/// A wrong face, for people and for programs.
+fn wrong_face(wrong: &WrongFace) -> WrongRay {
+    let WrongFace { face, truth, corners, reflectivity } = wrong;
+    let (said, exact) = match (corners, reflectivity) {
+        (None, _) => ("nothing".to_string(), format!("{:?}", truth.corners)),
+        (Some(_), Some(said)) => (format!("the reflectivity {said}"), truth.reflectivity.to_string()),
+        (Some(said), None) => (format!("the corners {said:?}"), format!("{:?}", truth.corners)),
+    };
+    WrongRay {
+        key: truth.clause.key().into(),
+        line: DefectLine {
+            place: format!("face {face}"),
+            quantity: truth.clause.key().into(),
+            words: format!("given is {said}; true is {exact}"),
+            what: truth.clause.sentence().into(),
+            ..DefectLine::default()
+        },
+        data: json!({
+            "bundle": "triangles",
+            "ray": [face],
+            "quantity": truth.clause.key(),
+            "said": [{ "who": "given", "value": said }],
+            "true": exact,
+            "difference": Value::Null,
+            "difference_unit": "",
+            "ratio": Value::Null,
+            "margin": Value::Null,
+            "what": truth.clause.sentence(),
+            "command": "",
+        }),
+    }
+}
+
+/// The verdict in one sentence.
+fn headline(checked: &InputChecked) -> String {
     let faces = counted(checked.faces as u64, "face", "faces");
     match (checked.wrong.len(), checked.given == checked.faces) {
-        (0, true) => format!("✓ {faces}: all are right."),
-        (0, false) => format!("✗ {faces} are right, and there are {} in all.", checked.given),
-        (wrong, _) => format!("✗ {wrong} of {faces} are wrong; {} are given.", checked.given),
+        (0, true) => format!("{faces}: all are right."),
+        (0, false) => format!("{faces} are right, and there are {} in all.", checked.given),
+        (wrong, _) => format!("{wrong} of {faces} are wrong; {} are given.", checked.given),
     }
-}
-
-/// The report as JSON.
-pub fn input_json(checked: &InputChecked) -> String {
-    let wrong = |wrong: &WrongFace| {
-        json!({
-            "face": wrong.face,
-            "clause": wrong.truth.clause.key(),
-            "said": wrong.corners,
-            "said_reflectivity": wrong.reflectivity,
-            "true": wrong.truth.corners,
-            "true_reflectivity": wrong.truth.reflectivity,
-        })
-    };
-    let document: Value = json!({
-        "format": 1,
-        "kind": "input",
-        "raypencil_version": env!("CARGO_PKG_VERSION"),
-        "candidate": checked.name,
-        "faces": checked.faces,
-        "given": checked.given,
-        "reflectivity_given": checked.has_reflectivity,
-        "passes": checked.passes(),
-        "wrong": checked.wrong.iter().map(wrong).collect::<Vec<_>>(),
-    });
-    format!("{document:#}\n")
-}
-
-/// The report as JUnit: a case for each clause.
-fn junit(checked: &InputChecked) -> io::Result<String> {
-    let mut suite = JunitSuite::new(format!("input pack: {}", checked.name));
-    for clause in LoadingClause::ALL {
-        let first = checked.wrong.iter().find(|wrong| wrong.truth.clause == *clause);
-        suite.push(match (first, checked.of(*clause)) {
-            (Some(first), _) => JunitCase::failed(clause.key(), "defect", of_face(first)),
-            (None, (_, 0)) => JunitCase::passed(clause.key()),
-            (None, (_, extra)) => JunitCase::failed(
-                clause.key(),
-                "defect",
-                format!("{extra} faces more than {}", checked.faces),
-            ),
-        });
-    }
-    let mut report = JunitReport::new(format!("raypencil check {}", checked.name));
-    report.push(suite);
-    report.to_xml()
-}
-
-/// Writes `junit.xml` and then `check.json` into a folder, and returns their paths.
-///
-/// # Errors
-/// Names the file or folder that could not be written, and why.
-pub fn write_input_check(checked: &InputChecked, folder: &Path) -> Result<Vec<PathBuf>, FolderError> {
-    let last = begin_output_folder(folder, "check.json")?;
-    let path = folder.join("junit.xml");
-    let document =
-        junit(checked).map_err(|source| FileError::Io { path: path.clone(), action: "write", source })?;
-    write_atomically(&path, |file| file.write_all(document.as_bytes()))?;
-    write_atomically(&last, |file| file.write_all(input_json(checked).as_bytes()))?;
-    Ok(vec![path, last])
 }

@@ -4,10 +4,7 @@ use std::path::{Path, PathBuf};
 
 use raypencil_files::{Limits, Values, read_npy, write_npy};
 use raypencil_judge::{Class, GroundTruth, ListedDefect, Quantity, Recorded, check};
-use raypencil_pack::{
-    Checked, FileRole, Manifest, PackKind, check_json, check_pack, check_page, check_screen, write_check,
-    write_questions,
-};
+use raypencil_pack::{Checked, FileRole, Manifest, PackKind, check_pack, write_document, write_questions};
 use raypencil_scanline::Scanline;
 use raypencil_scene::{Precision, Renderer, Request, Silent};
 use raypencil_scene_io::{Overrides, Subject, load};
@@ -51,16 +48,19 @@ fn assert_report(name: &str, text: &str) {
 
 #[test]
 fn screens_are_as_the_snapshots_show() {
-    assert_report("screen_of_a_perfect_candidate", &check_screen(&perfect()));
-    assert_report("screen_of_a_partial_candidate", &check_screen(&partial()));
+    assert_report("screen_of_a_perfect_candidate", &perfect().document().screen());
+    assert_report("screen_of_a_partial_candidate", &partial().document().screen());
+    assert_report("markdown_of_a_partial_candidate", &partial().document().markdown());
 }
 
 #[test]
 fn junit_is_as_the_snapshot_shows() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let [_, junit, _] =
-        write_check(&partial(), folder.path()).expect("a writable folder").try_into().unwrap();
-    assert_report("junit_of_a_partial_candidate", &std::fs::read_to_string(junit).unwrap());
+    let document = partial().document_with_pictures().expect("pictures");
+    write_document(&document, folder.path()).expect("a writable folder");
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect("a file");
+    assert_report("junit_of_a_partial_candidate", &read("junit.xml"));
+    assert_eq!((read("summary.md"), read("check.json")), (document.markdown(), document.json()));
 }
 
 /// A candidate with three faults in the camera: an early range 1 um too long, a late one 2 m too long, and a pixel of
@@ -106,13 +106,17 @@ fn the_worst_defects_are_listed_hits_before_values() {
         let of_pack = array.planes[0].real(index);
         assert!(margin.lo >= of_pack && margin.lo <= of_pack * (1.0 + 1e-6), "{margin:?} {of_pack}");
     }
-    let screen = check_screen(&checked);
+    let screen = checked.document().screen();
     assert!(screen.contains("hit/miss: mine says no hit; true is face"), "{screen}");
+}
+
+fn page_of(checked: &Checked) -> String {
+    checked.document_with_pictures().expect("pictures").page().expect("a page")
 }
 
 #[test]
 fn the_page_has_verdict_quantities_defects_and_pictures() {
-    let page = raypencil_explorer::without_explorer(&check_page(&three_faults()).expect("a page"));
+    let page = raypencil_explorer::without_explorer(&page_of(&three_faults()));
     assert!(page.contains("<span aria-hidden=\"true\">✗</span> 3 of 6,912 rays are wrong"), "{page}");
     assert!(page.contains("mine says no hit; true is face"), "the worst defect is told");
     assert_eq!(page.matches("<li>").count(), 3);
@@ -128,7 +132,7 @@ fn the_page_has_verdict_quantities_defects_and_pictures() {
     for outside in ["http:", "https:", "<script", "<link", "url("] {
         assert!(!page.contains(outside), "{outside}");
     }
-    let perfect = check_page(&perfect()).expect("a page");
+    let perfect = page_of(&perfect());
     assert!(perfect.contains("✓") && perfect.contains("<p>None.</p>"));
     assert!(perfect.contains("ranges are equal to the last bit"));
 }
@@ -138,7 +142,7 @@ fn the_json_keeps_to_its_schema() {
     let schema: Value = serde_json::from_str(SCHEMA).unwrap();
     assert_keys_are_closed(&schema);
     let mut checked = perfect();
-    let clean: Value = serde_json::from_str(&check_json(&checked)).unwrap();
+    let clean: Value = serde_json::from_str(&checked.document().json()).unwrap();
     assert_eq!(schema_faults(&schema, &clean), Vec::<String>::new());
     assert_eq!(clean["verdict"], "agrees");
     // A report with a defect and an unknown channel.
@@ -162,12 +166,12 @@ fn the_json_keeps_to_its_schema() {
         margin: None,
         what: "off".into(),
     });
-    let wrong: Value = serde_json::from_str(&check_json(&checked)).unwrap();
+    let wrong: Value = serde_json::from_str(&checked.document().json()).unwrap();
     assert_eq!(schema_faults(&schema, &wrong), Vec::<String>::new());
     assert_eq!(wrong["verdict"], "defects");
-    let faulty: Value = serde_json::from_str(&check_json(&three_faults())).unwrap();
+    let faulty: Value = serde_json::from_str(&three_faults().document().json()).unwrap();
     assert_eq!(schema_faults(&schema, &faulty), Vec::<String>::new());
-    let depth = &faulty["sensors"][0]["quantities"][3];
+    let depth = &faulty["bundles"][0]["quantities"][3];
     assert_eq!((&depth["quantity"], &depth["not_given"]), (&"depth".into(), &"not given".into()));
 }
 

@@ -8,7 +8,7 @@ use exr::prelude::{
 };
 use raypencil_files::{Limits, Storage, Values, read_npy};
 use raypencil_judge::{Class, Quantity};
-use raypencil_pack::{Checked, check_json, check_pack, check_screen};
+use raypencil_pack::{Checked, check_pack};
 use raypencil_scene::{Image, Precision, Silent};
 
 fn pack() -> PathBuf {
@@ -79,18 +79,18 @@ fn a_number_rounded_twice_is_off_for_double_precision_only() {
 #[test]
 fn ranges_rounded_to_half_precision_agree_and_are_not_called_exact() {
     let found = checked(&candidate(&[("range.T", &rounded())]));
-    assert!(found.check.passes(), "{}", check_screen(&found));
+    assert!(found.check.passes(), "{}", found.document().screen());
     let ranges = &found.check.totals()[&Quantity::Range.into()];
     let ulps = ranges.worst_ulps.as_ref().expect("compared").value;
     // Rounded to nearest: at most half an ulp of half precision, and thousands of ranges come near it.
     assert!(ulps > 0.4 && ulps <= 0.5, "{ulps}");
 
-    let screen = check_screen(&found);
+    let screen = found.document().screen();
     assert!(screen.contains("rays agree to half precision"), "{screen}");
     assert!(screen.contains("Stored in half precision") && screen.contains("65504"), "{screen}");
     assert!(!screen.contains("exact"), "{screen}");
-    let json: serde_json::Value = serde_json::from_str(&check_json(&found)).expect("JSON");
-    let range = &json["sensors"][0]["quantities"][2];
+    let json: serde_json::Value = serde_json::from_str(&found.document().json()).expect("JSON");
+    let range = &json["bundles"][0]["quantities"][2];
     assert_eq!((range["quantity"].as_str(), range["storage"].as_str()), (Some("range"), Some("half")));
     assert!(!json.to_string().contains("exact"), "{json}");
 }
@@ -114,7 +114,7 @@ fn an_error_beyond_half_an_ulp_of_half_precision_is_a_defect() {
     let listed = &found.check.sensors[0].listed[0];
     let place = (listed.place.i as usize) + (listed.place.j as usize) * exact.width() as usize;
     assert_eq!(place, at);
-    assert!(!check_screen(&found).contains("exact"), "{}", check_screen(&found));
+    assert!(!found.document().screen().contains("exact"), "{}", found.document().screen());
 }
 
 #[test]

@@ -197,11 +197,17 @@ fn packs_of_rays_judge_arrays() {
     );
     screen(folder.path(), &["cast", &cube, &rays, "-o", "mine"], 0);
     let shown = screen(folder.path(), &["check", "pack", "mine", "-o", "checked"], 0);
-    assert!(shown.contains("All 25 rays agree."), "{shown}");
+    assert!(
+        shown.contains("✓ 25 rays agree with the exact answers: 22 exact, 3 tie, 0 rounding."),
+        "{shown}"
+    );
     assert!(folder.path().join("checked/junit.xml").is_file());
     let check = fs::read_to_string(folder.path().join("checked/check.json")).unwrap();
     let check: serde_json::Value = serde_json::from_str(&check).unwrap();
-    assert_eq!((&check["kind"], &check["candidate"]["passes"]), (&"rays".into(), &true.into()));
+    assert_eq!((&check["kind"], &check["verdict"]), (&"rays".into(), &"agrees".into()));
+    let schema =
+        serde_json::from_str(include_str!("../../../../../../docs/formats/check.schema.json")).unwrap();
+    assert_eq!(schema_faults(&schema, &check), Vec::<String>::new());
     // A program that finds nothing: the rays through the top's outline are excused by rounding, that through its middle,
     // on an edge that two faces share, is not.
     let nothing = [f64::INFINITY; 25];
@@ -433,7 +439,7 @@ fn recordings_tell_too_near_from_a_miss() {
         raypencil::io::write_npy_numbers(&path, &array.shape, &missed).expect("a file");
     }
     let shown = screen(at, &["check", "pack", "right/rays/mast"], 0);
-    assert!(shown.contains("All 4 rays agree."), "{shown}");
+    assert!(shown.contains("4 rays agree with the exact answers"), "{shown}");
     let shown = screen(at, &["check", "pack", "other/rays/mast"], 1);
     for words in [
         "2 of 4 rays are wrong.",

@@ -74,7 +74,7 @@ fn an_error_of_two_ulp_is_found_and_named() {
         range.set(40, 50, value.next_up().next_up());
     });
     let output = check(folder.path(), "pyramids", &["--arithmetic", "f64", "-o", "out"]);
-    assert_fails(&output, &["camera pixel 40,50, range", "--pixel 40,50", "1 of 10,178 rays are wrong"]);
+    assert_fails(&output, &["camera pixel 40,50, range", "--pixel 40,50", "1 of 10,178 rays is wrong"]);
     let probe = format!("raypencil probe {}", pack("pyramids").join("scene.toml").display());
     assert_fails(&output, &[&probe]);
 
@@ -82,11 +82,11 @@ fn an_error_of_two_ulp_is_found_and_named() {
         serde_json::from_str(&fs::read_to_string(folder.path().join("out/check.json")).unwrap()).unwrap();
     assert_eq!(json["verdict"], "defects");
     assert_eq!(json["classes"]["defects"], 1);
-    assert_eq!(json["sensors"][0]["worst_defects"][0]["quantity"], "range");
+    assert_eq!(json["bundles"][0]["worst_defects"][0]["quantity"], "range");
     let junit = fs::read_to_string(folder.path().join("out/junit.xml")).unwrap();
     assert!(junit.contains("failures=\"1\"") && junit.contains("camera pixel 40,50"), "{junit}");
     let page = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
-    assert!(page.contains("1 of 10,178 rays are wrong") && page.contains("camera pixel 40,50"), "{page}");
+    assert!(page.contains("1 of 10,178 rays is wrong") && page.contains("camera pixel 40,50"), "{page}");
     // The printed command shows the ray.
     let repro = raypencil(
         folder.path(),
@@ -363,22 +363,18 @@ fn a_blind_pack_has_no_answers_and_can_be_checked() {
         "terrain.glb",
     ];
     assert_eq!(names, expected);
-    for renderer in ["scanline", "tracer"] {
-        assert_passes(&raypencil(
-            folder.path(),
-            &["render", "blind/scene.toml", "--with", renderer, "-o", renderer],
-        ));
-        let output = raypencil(folder.path(), &["check", "blind", renderer]);
-        assert_passes(&output);
-        assert!(text(&output.stdout).contains("blind-7 (blind)"), "{}", text(&output.stdout));
-    }
-    // Another terrain under the seed of this one is noticed.
-    assert_passes(&raypencil(folder.path(), &["pack", "--blind", "8", "-o", "other"]));
-    let manifest = fs::read_to_string(folder.path().join("other/manifest.json")).unwrap();
-    let lied = manifest.replace("\"blindSeed\": 8", "\"blindSeed\": 7");
+    // That both renderers pass blind packs is held by `clauses`; here it is the command's way that counts.
+    let render = ["render", "blind/scene.toml", "--with", "tracer", "-o", "tracer"];
+    assert_passes(&raypencil(folder.path(), &render));
+    let output = raypencil(folder.path(), &["check", "blind", "tracer"]);
+    assert_passes(&output);
+    assert!(text(&output.stdout).contains("blind-7 (blind)"), "{}", text(&output.stdout));
+    // A seed that does not give this terrain is noticed.
+    let manifest = fs::read_to_string(blind.join("manifest.json")).unwrap();
+    let lied = manifest.replace("\"blindSeed\": 7", "\"blindSeed\": 8");
     assert_ne!(lied, manifest);
-    fs::write(folder.path().join("other/manifest.json"), lied).unwrap();
-    assert_trouble(&raypencil(folder.path(), &["check", "other", "tracer"]), &["seed 7"]);
+    fs::write(blind.join("manifest.json"), lied).unwrap();
+    assert_trouble(&raypencil(folder.path(), &["check", "blind", "tracer"]), &["seed 8"]);
     assert_trouble(&raypencil(folder.path(), &["pack", "--blind", "8", "facets", "-o", "x"]), &["--blind"]);
 }
 
@@ -435,7 +431,7 @@ fn the_pack_is_a_candidate_for_itself() {
     let json =
         raypencil(folder.path(), &["check", &pack.to_string_lossy(), &pack.to_string_lossy(), "--json"]);
     let json: serde_json::Value = serde_json::from_str(&text(&json.stdout)).unwrap();
-    for sensor in json["sensors"].as_array().unwrap() {
+    for sensor in json["bundles"].as_array().unwrap() {
         for quantity in sensor["quantities"].as_array().unwrap() {
             let ulps = &quantity["worst_ulp"]["value"];
             assert!(ulps.is_null() || *ulps == 0.0, "{quantity}");

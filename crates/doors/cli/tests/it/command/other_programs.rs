@@ -192,7 +192,7 @@ fn depth_images_of_16_bits_are_judged_in_their_unit() {
         let output = check(folder.path(), "hard", &["--scale", "0.001", "--json"]);
         assert_passes(&output);
         let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-        let quantities = document["sensors"][0]["quantities"].as_array().unwrap();
+        let quantities = document["bundles"][0]["quantities"].as_array().unwrap();
         let depth = quantities.iter().find(|one| one["quantity"] == "depth").unwrap();
         assert_eq!(depth["storage"], "steps of 0.001 m", "{name}");
         let schema = include_str!("../../../../../../docs/formats/check.schema.json");
@@ -224,7 +224,7 @@ fn a_depth_that_is_a_step_off_is_wrong() {
     let (folder, file) = mine("camera/depth.Z.npy");
     let cells = millimetres.iter().map(|&number| u32::from(number)).collect();
     write_npy(&file, &[&Image::from_cells(size[0], size[1], cells)]).unwrap();
-    assert_fails(&check(folder.path(), "hard", &["--scale", "0.001"]), &["1 of 432 rays are wrong"]);
+    assert_fails(&check(folder.path(), "hard", &["--scale", "0.001"]), &["1 of 432 rays is wrong"]);
 }
 
 #[test]
@@ -263,14 +263,14 @@ fn every_format_of_render_is_read_again() {
     }
     let same = |a: &str, b: &str, more: &[&str]| {
         let shown = screen(folder.path(), &[&["diff", a, b], more].concat(), 0);
-        assert!(shown.contains("PASS 118 channels compared, the same in every cell"), "{a}, {b}: {shown}");
+        assert!(shown.contains("✓ 118 channels compared, the same in every cell"), "{a}, {b}: {shown}");
     };
     same("npy", "npz", &[]);
     same("npy", "zarr", &[]);
     same("npz", "zarr/maps.zarr", &[]);
     same("exr", "exr-each", &[]);
     let shown = screen(folder.path(), &["diff", "zarr", "exr-each", "--fail-ulp", "0.5"], 0);
-    assert!(shown.contains("PASS 118 channels compared"), "{shown}");
+    assert!(shown.contains("✓ 118 channels compared"), "{shown}");
     let candidates = ["validate", &scene, "--candidate", "npz", "--candidate", "zarr", "-o", "out"];
     assert!(screen(folder.path(), &candidates, 0).contains("2 candidates agree"));
 }

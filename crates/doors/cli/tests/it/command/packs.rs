@@ -4,6 +4,7 @@ use std::fs;
 
 use raypencil::Image;
 use raypencil::io::write_npy;
+use raypencil_tests::schema::schema_faults;
 use tempfile::TempDir;
 
 use super::check::{assert_fails, assert_passes, pack};
@@ -72,14 +73,20 @@ fn an_input_pack_tests_a_loader() {
     fs::create_dir(folder.path().join("mine")).expect("a folder");
     write_npy(folder.path().join("mine/triangles.npy"), &[&Image::filled(9, 29, 0.5)]).expect("a file");
     let wrong = raypencil(folder.path(), &["check", "input", "mine", "-o", "out"]);
-    let words = ["✗ 28 of 28 faces are wrong; 29 are given.", "face 0, `axes` (glTF is y up"];
+    let words =
+        ["✗ 28 of 28 faces are wrong; 29 are given.", "face 0, axes: given is the corners", "glTF is y up"];
     assert_fails(&wrong, &words);
     let json = fs::read(folder.path().join("out/check.json")).expect("a file");
     let json: serde_json::Value = serde_json::from_slice(&json).expect("JSON");
+    let triangles = &json["bundles"][0];
     assert_eq!(
-        (&json["passes"], &json["given"], &json["wrong"][3]["clause"]),
-        (&false.into(), &29.into(), &"scale".into())
+        (&json["kind"], &json["verdict"], &triangles["worst_defects"][3]["quantity"]),
+        (&"triangles".into(), &"defects".into(), &"scale".into())
     );
+    assert_eq!((&triangles["classes"]["defects"], &triangles["classes"]["agree"]), (&29.into(), &0.into()));
+    let schema =
+        serde_json::from_str(include_str!("../../../../../../docs/formats/check.schema.json")).unwrap();
+    assert_eq!(schema_faults(&schema, &json), Vec::<String>::new());
     let junit = fs::read_to_string(folder.path().join("out/junit.xml")).expect("a file");
     assert!(junit.contains("failures=\"22\""), "each clause, and the scene by a face too many: {junit}");
 

@@ -1,69 +1,7 @@
-//! Words that the reports of a check share.
+//! What a candidate gives, what it does not, and in which type it stores it.
 
 use raypencil_files::Storage;
-use raypencil_judge::{Check, Class, Item, ItemTally, Recorded, name_of};
-use raypencil_report::count;
-use raypencil_scene::Precision;
-
-use crate::check::Checked;
-
-/// Maximum number of defects that a screen or a test case describes; all are counted.
-pub(crate) const MAX_SHOWN_DEFECTS: usize = 5;
-
-/// The name of an arithmetic.
-pub(crate) fn arithmetic(precision: Precision) -> &'static str {
-    if precision == Precision::F32 { "f32" } else { "f64" }
-}
-
-/// The outcome of a check.
-pub(crate) fn verdict(checked: &Checked) -> &'static str {
-    match (checked.check.compared(), checked.check.passes(), checked.hits_anything()) {
-        (0, ..) => "nothing_compared",
-        (_, false, _) => "defects",
-        (_, true, true) => "agrees",
-        (_, true, false) => "nothing_hit",
-    }
-}
-
-/// A sign that does not depend on colour.
-pub(crate) fn sign(checked: &Checked) -> &'static str {
-    match verdict(checked) {
-        "agrees" => "✓",
-        "defects" => "✗",
-        _ => "?",
-    }
-}
-
-/// The outcome in one sentence. A recording in half precision, or in steps, is never said to be exact.
-pub(crate) fn headline(checked: &Checked) -> String {
-    let Checked { check, recorded, .. } = checked;
-    let rays = count(check.compared());
-    let of = |class| count(check.of(class));
-    let is_partial = check.totals().values().any(|tally| tally.not_compared > 0);
-    let partial = if is_partial { "; nothing is known about what was not compared" } else { "" };
-    let (tie, rounding) = (of(Class::Tie), of(Class::Rounding));
-    match verdict(checked) {
-        "agrees" => match recorded.coarseness() {
-            None => format!(
-                "{rays} rays agree with the exact answers: {} exact, {tie} tie, {rounding} rounding{partial}.",
-                of(Class::Agree)
-            ),
-            Some(coarse) => format!(
-                "{rays} rays agree to {coarse}: {} agree, {tie} tie, {rounding} rounding{partial}.",
-                of(Class::Agree)
-            ),
-        },
-        "defects" => {
-            format!("{} of {rays} rays are wrong, {} undecided.", of(Class::Defect), of(Class::Undecided))
-        }
-        "nothing_hit" => {
-            format!(
-                "No ray of this pack hits anything: that the candidate says so on {rays} rays proves little."
-            )
-        }
-        _ => "Nothing was compared.".into(),
-    }
-}
+use raypencil_judge::{Check, Item, ItemTally, Recorded, name_of};
 
 /// A remark for each storage that is coarser than single precision: what is stored so, and which errors it hides.
 pub(crate) fn coarse_storages(recorded: &Recorded) -> Vec<String> {

@@ -1,0 +1,128 @@
+//! A candidate against a pack of any form: sensors and their sets of rays, rays of no sensor, triangles.
+
+use std::path::Path;
+
+use raypencil_cast::{CandidateConventions, RayPackChecked, check_ray_pack, is_ray_pack};
+use raypencil_files::{FileError, FolderError};
+use raypencil_judge::JudgeShare;
+use raypencil_pack::{
+    CheckError, Checked, Declarations, InputChecked, PackForm, check_input, check_pack_by, is_input_pack,
+    write_document,
+};
+use raypencil_report::Document;
+use raypencil_scene::Progress;
+
+use crate::ray_set_packs::{CheckedRaySet, check_packed_ray_sets};
+
+/// What a pack asks for, by the files that it has.
+pub fn pack_form(pack: &Path) -> PackForm {
+    if is_input_pack(pack) {
+        PackForm::Triangles
+    } else if is_ray_pack(pack) {
+        PackForm::Rays
+    } else {
+        PackForm::Sensors
+    }
+}
+
+/// A candidate, checked.
+#[derive(Debug)]
+pub enum CheckedPack {
+    /// Rays of sensors, and of sets beside them.
+    Sensors {
+        /// The check of all.
+        checked: Box<Checked>,
+        /// Each set by itself, for its own page.
+        sets: Vec<CheckedRaySet>,
+    },
+    /// Rays of no sensor.
+    Rays(Box<RayPackChecked>),
+    /// Triangles.
+    Triangles(InputChecked),
+}
+
+/// Checks a candidate against a pack of any form.
+///
+/// # Errors
+/// As `check_pack_by`, `check_ray_pack` and `check_input`.
+pub fn check_any_pack(
+    pack: &Path,
+    candidate: &Path,
+    declarations: &Declarations,
+    share: JudgeShare,
+    progress: &dyn Progress,
+) -> Result<CheckedPack, CheckError> {
+    let conventions = |declared: &Declarations| CandidateConventions {
+        miss: declared.miss,
+        ignores_faces: declared.ignores_faces,
+    };
+    Ok(match pack_form(pack) {
+        PackForm::Triangles => CheckedPack::Triangles(check_input(pack, candidate)?),
+        PackForm::Rays => {
+            let of_rays = conventions(declarations);
+            let checked = check_ray_pack(pack, candidate, declarations.precision(), of_rays, progress)?;
+            CheckedPack::Rays(Box::new(checked))
+        }
+        PackForm::Sensors => {
+            let mut checked = check_pack_by(pack, candidate, declarations, share, progress)?;
+            let (precision, of_rays) = (checked.recorded.precision, conventions(&checked.declared));
+            let sets = check_packed_ray_sets(pack, candidate, precision, of_rays, progress)?;
+            checked.ray_sets = sets.iter().map(CheckedRaySet::bundle).collect();
+            CheckedPack::Sensors { checked: Box::new(checked), sets }
+        }
+    })
+}
+
+impl CheckedPack {
+    /// Whether nothing is wrong, and what was compared proves something.
+    pub fn passes(&self) -> bool {
+        match self {
+            Self::Sensors { checked, .. } => checked.passes(),
+            Self::Rays(checked) => checked.passes(),
+            Self::Triangles(checked) => checked.passes(),
+        }
+    }
+
+    /// The mistake that explains what is wrong, as one sentence without its full stop.
+    pub fn why(&self) -> Option<String> {
+        match self {
+            Self::Sensors { checked, .. } => checked.why(),
+            Self::Rays(checked) => checked.why.clone(),
+            Self::Triangles(_) => None,
+        }
+    }
+
+    /// The check for a screen and for programs.
+    pub fn document(&self) -> Document {
+        match self {
+            Self::Sensors { checked, .. } => checked.document(),
+            Self::Rays(checked) => checked.document(),
+            Self::Triangles(checked) => checked.document(),
+        }
+    }
+
+    /// Writes `report.html`, `junit.xml`, `summary.md` and last `check.json` into a folder; of each set of rays that the candidate
+    /// gives the same into `rays/NAME`.
+    ///
+    /// # Errors
+    /// Names the file or folder that could not be written, and why.
+    pub fn write(&self, folder: &Path) -> Result<(), FolderError> {
+        let (document, sets) = match self {
+            Self::Sensors { checked, sets } => {
+                let document = checked.document_with_pictures().map_err(|error| {
+                    FileError::io(&folder.join("report.html"), "write", std::io::Error::other(error))
+                })?;
+                (document, sets.as_slice())
+            }
+            Self::Rays(checked) => (checked.document_with_pictures(), [].as_slice()),
+            Self::Triangles(checked) => (checked.document(), [].as_slice()),
+        };
+        write_document(&document, folder)?;
+        for CheckedRaySet { name, checked, .. } in sets {
+            if let Some(checked) = checked {
+                write_document(&checked.document_with_pictures(), &folder.join("rays").join(name))?;
+            }
+        }
+        Ok(())
+    }
+}

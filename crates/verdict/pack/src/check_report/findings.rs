@@ -1,0 +1,498 @@
+//! The one form of a check, whatever a pack asks for: rays of sensors, rays of no sensor, or triangles.
+//!
+//! A *bundle* is what is asked under one name: a camera, a beam, a set of rays, the triangles of a file. Each has its
+//! items: the quantities of its rays, or the clauses of loading.
+
+use raypencil_judge::{CHECK_CLASSES, Class, ClassCounts, class_counts_json};
+use raypencil_report::{
+    Block, Column, DefectGroup, DefectLine, Document, Grid, JunitCase, JunitSuite, Outcome, Room, count,
+    counted, number, quantity,
+};
+use raypencil_scene::Precision;
+use serde_json::{Map, Value, json};
+
+use crate::published::PackLabel;
+
+/// Number of the format of `check.json`. It grows when a key changes its meaning or goes away.
+const FORMAT: u32 = 3;
+
+/// Maximum number of defects that a screen or a test case describes; all are counted.
+pub(crate) const MAX_SHOWN_DEFECTS: usize = 5;
+
+/// What a pack asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PackForm {
+    /// Rays of a camera and of beams.
+    Sensors,
+    /// Rays of no sensor.
+    Rays,
+    /// The triangles of a glTF file.
+    Triangles,
+}
+
+impl PackForm {
+    fn key(self) -> &'static str {
+        match self {
+            Self::Sensors => "sensors",
+            Self::Rays => "rays",
+            Self::Triangles => "triangles",
+        }
+    }
+}
+
+/// The largest value of something, and the ray that has it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WorstOf {
+    /// The value.
+    pub value: f64,
+    /// Its ray in words.
+    pub place: String,
+    /// Name of the bundle.
+    pub bundle: String,
+    /// Index of the ray in its bundle: column and row of a sensor, or the number of a ray.
+    pub ray: Vec<u64>,
+    /// The referee's ruling on that ray, in words.
+    pub ruling: Option<String>,
+    /// The command that shows everything about the ray.
+    pub command: String,
+}
+
+/// What became of one item.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ItemFindings {
+    /// Name for programs.
+    pub key: String,
+    /// Name for people.
+    pub name: String,
+    /// Unit of the errors; empty for a pure number.
+    pub unit: &'static str,
+    /// How the candidate stores it, if that is known.
+    pub storage: Option<String>,
+    /// Why nothing of it was compared; `None` if something was, or if no ray has it.
+    pub not_given: Option<&'static str>,
+    /// Rays by class.
+    pub by_class: ClassCounts,
+    /// Rays for which the candidate does not have it.
+    pub not_compared: u64,
+    /// The largest error in units in the last place.
+    pub worst_ulp: Option<WorstOf>,
+    /// The largest error.
+    pub worst_error: Option<WorstOf>,
+    /// The largest ratio of an error to its bound.
+    pub worst_ratio: Option<WorstOf>,
+}
+
+impl ItemFindings {
+    /// Rays on which it was compared.
+    fn compared(&self) -> u64 {
+        self.by_class.iter().sum()
+    }
+
+    /// Rays on which it is wrong or undecided.
+    fn wrong(&self) -> u64 {
+        wrong(&self.by_class)
+    }
+
+    fn to_json(&self) -> Value {
+        let worst = |worst: &Option<WorstOf>| {
+            worst.as_ref().map(|worst| {
+                json!({
+                    "value": worst.value.is_finite().then_some(worst.value),
+                    "bundle": worst.bundle, "ray": worst.ray,
+                    "ruling": worst.ruling, "command": worst.command,
+                })
+            })
+        };
+        json!({
+            "quantity": self.key,
+            "unit": self.unit,
+            "storage": self.storage,
+            "not_given": self.not_given,
+            "compared": self.compared(),
+            "classes": class_counts_json(&self.by_class, &CHECK_CLASSES),
+            "not_compared": self.not_compared,
+            "worst_ulp": worst(&self.worst_ulp),
+            "worst_error": worst(&self.worst_error),
+            "worst_ratio": worst(&self.worst_ratio),
+        })
+    }
+}
+
+/// A wrong ray, for people and for programs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WrongRay {
+    /// Key of the item that is wrong.
+    pub key: String,
+    /// For people.
+    pub line: DefectLine,
+    /// For programs: `docs/formats/check.schema.json` has the keys.
+    pub data: Value,
+}
+
+/// What became of one bundle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BundleFindings {
+    /// Its name: camera, beam-0, rays/NAME, triangles.
+    pub name: String,
+    /// Rays of which anything was compared, by the worst class of their items.
+    pub by_class: ClassCounts,
+    /// Rays of which nothing was compared.
+    pub not_compared: u64,
+    /// Rays on which the referee ruled, because the answer is not the exact one.
+    pub ruled: u64,
+    /// Each item.
+    pub items: Vec<ItemFindings>,
+    /// The worst and most telling rays.
+    pub listed: Vec<WrongRay>,
+    /// What explains why its rays are wrong, where it is looked for in this bundle alone.
+    pub why: Option<String>,
+}
+
+impl BundleFindings {
+    /// A bundle of which the candidate gives nothing.
+    pub fn not_given(name: String, rays: u64) -> Self {
+        let by_class = [0; Class::COUNT];
+        Self {
+            name,
+            by_class,
+            not_compared: rays,
+            ruled: 0,
+            items: Vec::new(),
+            listed: Vec::new(),
+            why: None,
+        }
+    }
+
+    /// Whether nothing of it is wrong or undecided.
+    pub fn passes(&self) -> bool {
+        wrong(&self.by_class) == 0
+    }
+
+    fn compared(&self) -> u64 {
+        self.by_class.iter().sum()
+    }
+
+    fn to_json(&self) -> Value {
+        json!({
+            "name": self.name,
+            "compared": self.compared(),
+            "classes": class_counts_json(&self.by_class, &CHECK_CLASSES),
+            "not_compared": self.not_compared,
+            "ruled": self.ruled,
+            "why": self.why,
+            "quantities": self.items.iter().map(ItemFindings::to_json).collect::<Vec<_>>(),
+            "worst_defects": self.listed.iter().map(|wrong| &wrong.data).collect::<Vec<_>>(),
+        })
+    }
+
+    /// The listed rays below a title that counts all; `None` if nothing is wrong.
+    fn group(&self) -> Option<DefectGroup> {
+        let total = wrong(&self.by_class);
+        let lines: Vec<DefectLine> = self.listed.iter().map(|wrong| wrong.line.clone()).collect();
+        let more = match total - total.min(lines.len() as u64) {
+            0 => String::new(),
+            more => format!("{} not listed here.", counted(more, "more is", "more are")),
+        };
+        (total > 0).then_some(DefectGroup {
+            title: format!("{}: {} wrong", self.name, count(total)),
+            lines,
+            more,
+        })
+    }
+}
+
+/// A check in its one form.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CheckFindings {
+    /// What the pack asks for.
+    pub form: PackForm,
+    /// Name of the pack.
+    pub pack: String,
+    /// What is said of it after its name; empty or with a blank before it.
+    pub pack_remark: &'static str,
+    /// SHA-256 of the file of the pack that lists the others.
+    pub pack_sha256: String,
+    /// Version and licence of the pack.
+    pub label: PackLabel,
+    /// Whether it is the published pack of its name.
+    pub is_published: bool,
+    /// Name of the candidate.
+    pub candidate: String,
+    /// Arithmetic of the candidate; triangles are copied, not computed.
+    pub arithmetic: Option<Precision>,
+    /// The bundles.
+    pub bundles: Vec<BundleFindings>,
+    /// The items over all bundles, as tables list them.
+    pub totals: Vec<ItemFindings>,
+    /// The worst rays of all, for a screen.
+    pub worst: Vec<DefectLine>,
+    /// Whether any ray of the pack hits. On a pack without hits a program that answers nothing is right.
+    pub hits_anything: bool,
+    /// The coarsest type in which the candidate is stored, if it is coarser than single precision.
+    pub coarseness: Option<String>,
+    /// The verdict in one sentence, where it is not told by counts of rays.
+    pub headline: Option<String>,
+    /// What explains why the candidate is wrong, as one sentence without its full stop.
+    pub why: Option<String>,
+    /// Sentences on what was compared, and what was not.
+    pub notes: Vec<String>,
+    /// Names and values of what was asked.
+    pub facts: Vec<(&'static str, String)>,
+    /// What only this form of a pack has, for programs: `scene`, `blind`, `verified`, `diagnosis`, `unknown_channels`.
+    pub of_form: Map<String, Value>,
+    /// Pictures as HTML; empty if there are none.
+    pub pictures: String,
+    /// The part of the page that answers when asked, as HTML; empty if there is none.
+    pub explorer: String,
+}
+
+/// Rays that are wrong or undecided.
+fn wrong(by_class: &ClassCounts) -> u64 {
+    by_class[Class::Defect as usize] + by_class[Class::Undecided as usize]
+}
+
+/// The name of an arithmetic.
+pub(crate) fn arithmetic(precision: Precision) -> &'static str {
+    if precision == Precision::F32 { "f32" } else { "f64" }
+}
+
+impl CheckFindings {
+    fn by_class(&self) -> ClassCounts {
+        std::array::from_fn(|k| self.bundles.iter().map(|bundle| bundle.by_class[k]).sum())
+    }
+
+    /// The outcome in one word.
+    pub fn verdict(&self) -> &'static str {
+        let by_class = self.by_class();
+        match (by_class.iter().sum::<u64>(), wrong(&by_class), self.hits_anything) {
+            (0, ..) => "nothing_compared",
+            (_, 1.., _) => "defects",
+            (_, 0, true) => "agrees",
+            (_, 0, false) => "nothing_hit",
+        }
+    }
+
+    /// The outcome in one sentence. A recording in half precision, or in steps, is never said to be exact.
+    fn sentence(&self) -> String {
+        let by_class = self.by_class();
+        let of = |class| count(by_class[class as usize]);
+        let rays = count(by_class.iter().sum());
+        match self.verdict() {
+            _ if self.headline.is_some() => self.headline.clone().unwrap_or_default(),
+            "agrees" => {
+                let is_partial = self.totals.iter().any(|item| item.not_compared > 0);
+                let partial = if is_partial { "; nothing is known about what was not compared" } else { "" };
+                let (agree, tie, rounding) = (of(Class::Agree), of(Class::Tie), of(Class::Rounding));
+                match &self.coarseness {
+                    None => format!(
+                        "{rays} rays agree with the exact answers: {agree} exact, {tie} tie, {rounding} rounding{partial}."
+                    ),
+                    Some(coarse) => {
+                        format!(
+                            "{rays} rays agree to {coarse}: {agree} agree, {tie} tie, {rounding} rounding{partial}."
+                        )
+                    }
+                }
+            }
+            "defects" => {
+                let undecided = match by_class[Class::Undecided as usize] {
+                    0 => String::new(),
+                    rays => format!(", {} undecided", count(rays)),
+                };
+                let are = if by_class[Class::Defect as usize] == 1 { "is" } else { "are" };
+                format!("{} of {rays} rays {are} wrong{undecided}.", of(Class::Defect))
+            }
+            "nothing_hit" => format!(
+                "No ray of this pack hits anything: that the candidate says so on {rays} rays proves little."
+            ),
+            _ => "Nothing was compared.".into(),
+        }
+    }
+
+    /// The document that all reports print.
+    pub fn document(self) -> Document {
+        let by_class = self.by_class();
+        let verdict = self.verdict();
+        let arithmetic = self.arithmetic.map(arithmetic);
+        let with = arithmetic.map_or(String::new(), |arithmetic| format!(", arithmetic {arithmetic}"));
+        let mut data = Map::new();
+        data.extend([
+            ("kind".to_string(), self.form.key().into()),
+            ("candidate".to_string(), self.candidate.as_str().into()),
+            ("arithmetic".to_string(), arithmetic.into()),
+            (
+                "pack".to_string(),
+                json!({
+                    "name": self.pack,
+                    "sha256": self.pack_sha256,
+                    "version": self.label.version,
+                    "licence": self.label.licence,
+                    "published": self.is_published,
+                }),
+            ),
+            ("compared".to_string(), by_class.iter().sum::<u64>().into()),
+            ("classes".to_string(), class_counts_json(&by_class, &CHECK_CLASSES)),
+            ("why".to_string(), self.why.as_deref().into()),
+            ("bundles".to_string(), self.bundles.iter().map(BundleFindings::to_json).collect()),
+        ]);
+        let absent = ["scene", "verified", "diagnosis"].map(|key| (key.to_string(), Value::Null));
+        data.extend(absent);
+        data.extend([("blind".to_string(), false.into()), ("unknown_channels".to_string(), json!([]))]);
+        data.extend(self.of_form.clone());
+        let mut suite = suite(&self.pack, &self.candidate, &self.bundles, self.why.as_deref());
+        if !self.hits_anything {
+            suite.push(JunitCase::failed(
+                "something is hit",
+                "nothing_hit",
+                "no ray of this pack hits anything",
+            ));
+        }
+        let mut remarks: Vec<String> = self.why.iter().map(|why| format!("Why: {why}.")).collect();
+        // Of one bundle alone it is the same reason.
+        if self.bundles.len() > 1 {
+            let whys = self.bundles.iter().filter_map(|bundle| Some((&bundle.name, bundle.why.as_ref()?)));
+            remarks.extend(whys.map(|(name, why)| format!("Why in {name}: {why}.")));
+        }
+        let mut facts = vec![("Candidate", self.candidate.clone())];
+        facts.extend(arithmetic.map(|arithmetic| ("Arithmetic", arithmetic.to_string())));
+        facts.push(("Pack", self.pack.clone()));
+        facts.extend(self.facts.clone());
+        Document {
+            run: format!("raypencil check {} {}", self.pack, self.candidate),
+            question: format!(
+                "{} against the answers to {}{}{with}",
+                self.candidate, self.pack, self.pack_remark
+            ),
+            outcome: match verdict {
+                "agrees" => Outcome::Agrees,
+                "defects" => Outcome::Fails,
+                _ => Outcome::Open,
+            },
+            headline: self.sentence(),
+            remarks,
+            blocks: vec![
+                Block::Table { title: "Every quantity", grid: grid(&self.totals) },
+                Block::Findings {
+                    title: "Defects",
+                    groups: self.bundles.iter().filter_map(BundleFindings::group).collect(),
+                    worst: self.worst.into_iter().take(MAX_SHOWN_DEFECTS).collect(),
+                },
+                Block::Text { title: "", lines: self.notes, room: Room::Everywhere },
+                Block::Pictures {
+                    title: "Range maps beside the exact ones",
+                    html: self.pictures,
+                    stays: false,
+                },
+            ],
+            suites: vec![suite],
+            facts,
+            format: FORMAT,
+            verdict,
+            data,
+            explorer: self.explorer,
+        }
+    }
+}
+
+/// The items in rows.
+fn grid(items: &[ItemFindings]) -> Grid {
+    let mut grid = Grid::new([
+        Column::text(""),
+        Column::text("stored as").wide(),
+        Column::number("compared"),
+        Column::number("agree"),
+        Column::number("tie"),
+        Column::number("rounding"),
+        Column::number("undecided").wide(),
+        Column::number("defect"),
+        Column::number("not compared"),
+        Column::number("ulp"),
+        Column::number("error"),
+        Column::number("/bound"),
+        Column::text("at"),
+    ]);
+    for item in items {
+        let of = |class| match item.not_given {
+            // Never 0: a quantity that is not given is not one without errors.
+            Some(_) => String::new(),
+            None => count(item.by_class[class as usize]),
+        };
+        let worst = |worst: &Option<WorstOf>, unit: &str| {
+            worst.as_ref().map_or(String::new(), |worst| quantity(worst.value, unit))
+        };
+        let row = [
+            item.name.clone(),
+            item.storage.clone().unwrap_or_default(),
+            item.not_given.map_or_else(|| count(item.compared()), |_| "not given".into()),
+            of(Class::Agree),
+            of(Class::Tie),
+            of(Class::Rounding),
+            of(Class::Undecided),
+            of(Class::Defect),
+            count(item.not_compared),
+            worst(&item.worst_ulp, ""),
+            worst(&item.worst_error, item.unit),
+            worst(&item.worst_ratio, ""),
+            item.worst_ratio.as_ref().map_or(String::new(), |worst| {
+                let ray: Vec<String> = worst.ray.iter().map(u64::to_string).collect();
+                format!("{} {}", worst.bundle, ray.join(","))
+            }),
+        ];
+        grid.row(row, item.wrong() > 0);
+    }
+    grid
+}
+
+/// Test results: a case for each bundle and item. What the candidate does not give is skipped. `why`: the mistake that explains
+/// its failures, if one does.
+pub(crate) fn suite(
+    pack: &str,
+    candidate: &str,
+    bundles: &[BundleFindings],
+    why: Option<&str>,
+) -> JunitSuite {
+    let mut suite = JunitSuite::new(format!("{pack}: {candidate}"));
+    for bundle in bundles {
+        let class = format!("{pack}.{candidate}.{}", bundle.name);
+        for item in &bundle.items {
+            suite.push(case(bundle, item, why).with_class(class.as_str()));
+        }
+    }
+    // Without this, a report of skipped cases alone would look like a pass.
+    if bundles.iter().all(|bundle| bundle.compared() == 0) {
+        suite.push(JunitCase::failed("something is compared", "nothing_compared", "nothing was compared"));
+    }
+    suite
+}
+
+/// The outcome of one item of one bundle.
+fn case(bundle: &BundleFindings, item: &ItemFindings, why: Option<&str>) -> JunitCase {
+    let name = item.name.as_str();
+    if item.wrong() == 0 {
+        return match item.not_given {
+            Some(why) => JunitCase::skipped(name, why),
+            None if item.compared() == 0 => JunitCase::skipped(name, "no ray has it"),
+            None => JunitCase::passed(name),
+        };
+    }
+    let [wrong, rays] = [item.wrong(), item.compared()].map(count);
+    let message = format!("{}: {name} is wrong on {wrong} of {rays}", bundle.name);
+    let of_item = bundle.listed.iter().filter(|one| one.key == item.key).take(MAX_SHOWN_DEFECTS);
+    let mut lines: Vec<String> = of_item
+        .flat_map(|WrongRay { line, .. }| {
+            [
+                format!("{}: {}", line.place, line.words),
+                format!("    {}", line.what),
+                format!("    {}", line.command),
+            ]
+        })
+        .filter(|line| !line.trim().is_empty())
+        .collect();
+    if let Some(largest) = &item.worst_ulp {
+        let ruling = largest.ruling.as_deref().map_or(String::new(), |ruling| format!(" ({ruling})"));
+        lines.push(format!("Largest error: {} ulp at {}{ruling}", number(largest.value), largest.place));
+        lines.push(format!("    {}", largest.command));
+    }
+    lines.extend(why.map(|why| format!("Why: {why}.")));
+    JunitCase::failed(name, "defect", message).with_text(lines.join("\n"))
+}

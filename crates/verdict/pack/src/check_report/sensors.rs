@@ -1,0 +1,260 @@
+//! A check of sensors in the form of every check.
+
+use raypencil_judge::{
+    Check, Class, Item, ItemTally, Largest, Recorded, SensorResult, key_of, listed_defects, name_of, unit_of,
+};
+use raypencil_report::{
+    DefectLine, Document, JunitSuite, MapPair, SensorPlots, count, counted, max_side_of_pictures,
+};
+use raypencil_scene::{Image, Maybe};
+use raypencil_scene_io::{Subject, probe_command};
+use serde_json::json;
+
+use crate::check::{Checked, Verified};
+use crate::check_report::explorer::explorer;
+use crate::check_report::findings::{
+    BundleFindings, CheckFindings, ItemFindings, PackForm, WorstOf, WrongRay, suite,
+};
+use crate::check_report::given::{coarse_storages, items_not_given, listed_totals, not_given};
+use crate::published::PackIdentity;
+
+/// Pictures of every sensor: the exact ranges, the candidate's, and their difference.
+const PICTURES_OF_SENSOR: u64 = 3;
+
+impl Checked {
+    /// The check, with its sets of rays, for a screen and for programs.
+    pub fn document(&self) -> Document {
+        findings(self).document()
+    }
+
+    /// The same with the pictures of its page, and the part that answers when asked. They take seconds.
+    ///
+    /// # Errors
+    /// An error of a template of pictures.
+    pub fn document_with_pictures(&self) -> Result<Document, askama::Error> {
+        let parts = (pictures(self)?, explorer(self));
+        Ok(CheckFindings { pictures: parts.0, explorer: parts.1, ..findings(self) }.document())
+    }
+}
+
+fn findings(checked: &Checked) -> CheckFindings {
+    let Checked { subject, recorded, check, diagnosis, is_blind, verified, pack, .. } = checked;
+    let mut bundles = sensor_bundles(subject, check, Some(recorded));
+    bundles.extend(checked.ray_sets.iter().cloned());
+    let totals = listed_totals(check);
+    let totals = totals.iter().map(|(item, tally)| {
+        let storage = recorded.storage_of_item(*item).map(|how| how.to_string());
+        item_findings(subject, *item, tally, storage)
+    });
+    // Of sets of rays, the hits: their values are in their own bundles.
+    let of_sets = checked.ray_sets.iter().filter_map(|set| {
+        let hit = set.items.first()?;
+        Some(ItemFindings { name: set.name.clone(), ..hit.clone() })
+    });
+    let diagnosis_json = diagnosis.as_ref().map(|found| {
+        let mistakes = found.mistakes.iter().map(|mistake| {
+            let (file, place) = mistake.docs();
+            json!({ "name": mistake.key(), "what": mistake.to_string(), "docs": format!("{file}, {place}") })
+        });
+        json!({
+            "agree": found.agree,
+            "tried": found.tried,
+            "mistakes": mistakes.collect::<Vec<_>>(),
+        })
+    });
+    let of_form = [
+        ("scene", json!({ "name": subject.name, "sha256": subject.sha256 })),
+        ("blind", (*is_blind).into()),
+        ("verified", json!({ "answers": verified.answers, "of": verified.of, "ray_files": verified.rays })),
+        ("diagnosis", diagnosis_json.into()),
+        ("unknown_channels", recorded.unknown.clone().into()),
+    ];
+    let mut worst: Vec<DefectLine> =
+        listed_defects(&check.sensors).into_iter().map(|one| wrong_ray(subject, one).line).collect();
+    worst.extend(checked.ray_sets.iter().flat_map(|set| set.listed.iter().map(|wrong| wrong.line.clone())));
+    CheckFindings {
+        form: PackForm::Sensors,
+        pack: subject.name.clone(),
+        pack_remark: if *is_blind { " (blind)" } else { "" },
+        pack_sha256: pack.sha256.clone(),
+        label: pack.label.clone(),
+        is_published: pack.is_published(),
+        candidate: recorded.name.clone(),
+        arithmetic: Some(recorded.precision),
+        totals: totals.chain(of_sets).collect(),
+        worst,
+        hits_anything: checked.hits_anything(),
+        coarseness: recorded.coarseness().map(|coarse| coarse.to_string()),
+        headline: None,
+        why: checked.why(),
+        notes: notes(checked),
+        facts: vec![("Scene SHA-256", subject.sha256.clone())],
+        of_form: of_form.into_iter().map(|(key, value)| (key.to_string(), value)).collect(),
+        pictures: String::new(),
+        explorer: String::new(),
+        bundles,
+    }
+}
+
+/// The suite of one check of sensors. `why`: the mistake that explains its failures, if one does.
+pub fn check_suite(subject: &Subject, candidate: &str, check: &Check, why: Option<&str>) -> JunitSuite {
+    suite(&subject.name, candidate, &sensor_bundles(subject, check, None), why)
+}
+
+/// A bundle for each sensor.
+fn sensor_bundles(subject: &Subject, check: &Check, recorded: Option<&Recorded>) -> Vec<BundleFindings> {
+    let bundle = |sensor: &SensorResult| {
+        let items = sensor.items.iter().map(|(item, tally)| {
+            let storage = recorded.and_then(|recorded| recorded.storage.get(&(sensor.sensor, item)));
+            item_findings(subject, item, tally, storage.map(ToString::to_string))
+        });
+        BundleFindings {
+            name: sensor.sensor.to_string(),
+            by_class: sensor.by_class,
+            not_compared: sensor.not_compared,
+            ruled: sensor.judged,
+            items: items.collect(),
+            listed: sensor.listed.iter().map(|one| wrong_ray(subject, one)).collect(),
+            why: None,
+        }
+    };
+    check.sensors.iter().map(bundle).collect()
+}
+
+fn wrong_ray(subject: &Subject, one: &raypencil_judge::ListedDefect) -> WrongRay {
+    let command = probe_command(subject, one.place);
+    let mut data = one.to_json(subject.scene.flux_model(), &command);
+    if let Some(keys) = data.as_object_mut() {
+        // As every bundle has them: the name of the bundle, the index of the ray, the command that shows it.
+        let sensor = keys.remove("sensor");
+        let indices = [keys.remove("i"), keys.remove("j")];
+        keys.remove("probe");
+        keys.insert("bundle".into(), sensor.into());
+        keys.insert("ray".into(), indices.into_iter().flatten().collect());
+        keys.insert("command".into(), command.as_str().into());
+    }
+    WrongRay {
+        key: key_of(subject.scene.flux_model(), one.item),
+        line: DefectLine {
+            place: one.place.to_string(),
+            quantity: name_of(one.item),
+            words: one.words(),
+            what: one.what.clone(),
+            command,
+            ..DefectLine::default()
+        },
+        data,
+    }
+}
+
+fn item_findings(subject: &Subject, item: Item, tally: &ItemTally, storage: Option<String>) -> ItemFindings {
+    let model = subject.scene.flux_model();
+    let worst = |largest: &Option<Largest>| {
+        largest.as_ref().map(|Largest { value, place, ruling }| WorstOf {
+            value: *value,
+            place: place.to_string(),
+            bundle: place.sensor.to_string(),
+            ray: vec![place.i.into(), place.j.into()],
+            ruling: ruling.clone(),
+            command: probe_command(subject, *place),
+        })
+    };
+    ItemFindings {
+        key: key_of(model, item),
+        name: name_of(item),
+        unit: unit_of(model, item),
+        storage,
+        not_given: not_given(tally),
+        by_class: tally.by_class,
+        not_compared: tally.not_compared,
+        worst_ulp: worst(&tally.worst_ulps),
+        worst_error: worst(&tally.worst_error),
+        worst_ratio: worst(&tally.worst_ratio),
+    }
+}
+
+/// Sentences on what was compared, what was not, and what of the pack was verified.
+fn notes(checked: &Checked) -> Vec<String> {
+    let Checked { recorded, check, .. } = checked;
+    let mut notes: Vec<String> =
+        recorded.unknown.iter().map(|name| format!("Unknown channel, not compared: {name}")).collect();
+    if !recorded.unknown.is_empty() {
+        notes.push(
+            "Say which map a channel is by --channel MAP=CHANNEL, such as --channel depth.Z=CHANNEL.".into(),
+        );
+    }
+    notes.extend(coarse_storages(recorded));
+    for why in ["not given", "stored in a type that cannot hold it"] {
+        let absent = items_not_given(check).into_iter().filter(|(_, reason)| *reason == why);
+        let names: Vec<String> = absent.map(|(item, _)| name_of(item)).collect();
+        if !names.is_empty() {
+            notes.push(format!("Not compared, because {why}: {}", names.join(", ")));
+        }
+    }
+    notes.extend(
+        checked
+            .ray_sets
+            .iter()
+            .filter(|set| set.items.is_empty())
+            .map(|set| format!("Not compared, because not given: {}", set.name)),
+    );
+    notes.push(pack_words(&checked.pack, checked.verified));
+    notes
+}
+
+/// Which pack it was and what of it was verified, in a sentence.
+fn pack_words(pack: &PackIdentity, Verified { answers, of, rays }: Verified) -> String {
+    let all = if answers == of { "all " } else { "" };
+    let hint = if answers == of { "" } else { " (all: --verify)" };
+    let rays = counted(rays, "array of rays is that", "arrays of rays are those");
+    format!(
+        "The pack ({}): {all}{} of {} answers are the referee's{hint}, and so is each by which a ray is wrong; {rays} of its scene.",
+        pack.words(),
+        count(answers),
+        count(of)
+    )
+}
+
+/// Of each sensor the exact ranges, the candidate's beside them, and the difference with its defects marked.
+fn pictures(checked: &Checked) -> Result<String, askama::Error> {
+    let exact = &checked.exact;
+    let sizes: Vec<(u32, u32)> = exact.maps.iter().map(|map| (map.width, map.height)).collect();
+    let max_side = max_side_of_pictures(&sizes, PICTURES_OF_SENSOR);
+    let shown = checked
+        .check
+        .sensors
+        .iter()
+        .filter_map(|sensor| Some((sensor, exact.map(sensor.sensor).range.as_ref()?)));
+    shown.map(|(sensor, exact)| section(checked, sensor, exact, max_side)).collect()
+}
+
+fn section(
+    checked: &Checked,
+    sensor: &SensorResult,
+    exact: &Image<Maybe<f64>>,
+    max_side: u32,
+) -> Result<String, askama::Error> {
+    let recorded = &checked.recorded;
+    let id = sensor.sensor;
+    let mut plots = SensorPlots::new(id, (exact.width(), exact.height()), max_side);
+    let mut numbers = match sensor.compared() {
+        0 => "not given".into(),
+        rays => {
+            let wrong = sensor.of(Class::Defect) + sensor.of(Class::Undecided);
+            format!("{} wrong of {}", count(wrong), counted(rays, "ray", "rays"))
+        }
+    };
+    match &recorded.answers.map(id).range {
+        Some(range) => {
+            plots.add_ranges(&[("exact", exact), (&recorded.name, range)]);
+            let pair = MapPair { a: ("exact", exact), b: (&recorded.name, range) };
+            plots.add_difference(pair, None, sensor.defects.iter().map(|defect| defect.place));
+        }
+        None => {
+            numbers.push_str(" · range: not given");
+            plots.add_ranges(&[("exact", exact)]);
+        }
+    }
+    let size = format!("{} × {}", exact.width(), exact.height());
+    plots.section(&id.to_string(), &size, &numbers)
+}
