@@ -3,9 +3,7 @@
 use std::path::Path;
 
 use raypencil::Progress as _;
-use raypencil::diff::{
-    Sides, Thresholds, diff as compare, diff_json, diff_screen, diff_text, rule, write_diff,
-};
+use raypencil::diff::{Sides, Thresholds, diff as compare, diff_document, rule, write_diff};
 use raypencil::harness::read_sides;
 use raypencil::io::{OutputFolder, Overrides, load};
 use raypencil::judge::{GroundTruth, check as judge};
@@ -14,6 +12,9 @@ use raypencil::pack::CheckError;
 use crate::args::Diff;
 use crate::console::{Spinner, is_terminal, say};
 use crate::{Outcome, Trouble};
+
+/// Length of a line on a terminal, characters.
+const LINE_CHARS: usize = 100;
 
 pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
     let spinner = Spinner::new();
@@ -59,11 +60,14 @@ pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
     }
     output.map_or(Ok(()), OutputFolder::finish)?;
     drop(spinner);
-    if json {
-        say(&diff_json(&difference, &sides));
-    } else {
-        let screen = if is_terminal() { diff_screen } else { diff_text };
-        say(&screen(&difference, &sides, command.output.as_deref()));
+    let document = diff_document(&difference, &sides);
+    say(&match json {
+        true => document.json(),
+        false if is_terminal() => document.screen_of_width(LINE_CHARS),
+        false => document.screen(),
+    });
+    if let Some(folder) = command.output.as_deref().filter(|_| !json) {
+        say(&format!("Report: {}\n", folder.join("report.html").display()));
     }
     Ok(if difference.passes() { Outcome::Fine } else { Outcome::Differs })
 }

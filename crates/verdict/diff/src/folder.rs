@@ -1,29 +1,15 @@
 //! The files of a comparison.
 
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use raypencil_files::{FileError, FolderError, begin_output_folder, write_atomically};
+use raypencil_files::{FileError, FolderError, write_texts};
 use raypencil_scene::Progress;
 
 use crate::difference::{Difference, Sides};
-use crate::html::html;
-use crate::junit::junit;
-use crate::summary::diff_json;
+use crate::document::diff_document_with_pictures;
 
-/// Paths of the files that [`write_diff`] wrote.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct WrittenDiff {
-    /// Path of `report.html`.
-    pub report: PathBuf,
-    /// Path of `junit.xml`.
-    pub junit: PathBuf,
-    /// Path of `summary.json`.
-    pub summary: PathBuf,
-}
-
-/// Writes `report.html`, `junit.xml` and then `summary.json` into a folder. A `summary.json` marks a complete folder.
-/// Other files in the folder stay.
+/// Writes `report.html`, `junit.xml`, `summary.md` and then `summary.json` into a folder. A `summary.json` marks a complete
+/// folder. Other files in the folder stay.
 ///
 /// # Errors
 /// Names the file or folder that could not be written, and why.
@@ -32,19 +18,10 @@ pub fn write_diff(
     sides: &Sides,
     folder: &Path,
     progress: &dyn Progress,
-) -> Result<WrittenDiff, FolderError> {
-    let summary = begin_output_folder(folder, "summary.json")?;
+) -> Result<(), FolderError> {
     progress.stage("writing the report");
-    let write = |name: &str, contents: Result<String, io::Error>| -> Result<PathBuf, FolderError> {
-        let path = folder.join(name);
-        // An error of the template or the document is reported with the path of its file.
-        let contents =
-            contents.map_err(|source| FileError::Io { path: path.clone(), action: "write", source })?;
-        write_atomically(&path, |file| file.write_all(contents.as_bytes()))?;
-        Ok(path)
-    };
-    let report = write("report.html", html(difference, sides).map_err(io::Error::other))?;
-    let junit = write("junit.xml", junit(difference, sides).map_err(io::Error::other))?;
-    write("summary.json", Ok(diff_json(difference, sides)))?;
-    Ok(WrittenDiff { report, junit, summary })
+    let page = |error| FileError::io(&folder.join("report.html"), "write", std::io::Error::other(error));
+    let document = diff_document_with_pictures(difference, sides).map_err(page)?;
+    let texts = document.files("summary.json");
+    write_texts(folder, &texts.map_err(|(name, source)| FileError::io(&folder.join(name), "write", source))?)
 }

@@ -1,17 +1,14 @@
-//! `junit.xml` of a comparison for CI: one test case per channel.
+//! A comparison for CI: one test case per channel.
 
-use std::io;
-
-use raypencil_report::{JunitCase, JunitReport, JunitSuite, count, counted, number, quantity};
+use raypencil_report::{JunitCase, JunitSuite, count, counted, number, quantity};
 
 use crate::difference::{ChannelDifference, Difference, Sides};
 use crate::rulings::RuledCell;
 use crate::words::{allowed, at};
 
-/// The document.
-pub(crate) fn junit(difference: &Difference, sides: &Sides) -> io::Result<String> {
+/// The suite of a difference.
+pub(crate) fn suite(difference: &Difference, sides: &Sides) -> JunitSuite {
     let [a, b] = sides.names;
-    let mut report = JunitReport::new(format!("raypencil diff {a} {b}"));
     let mut suite = JunitSuite::new(format!("{a} against {b}"));
     for channel in &difference.channels {
         suite.push(case(difference, channel));
@@ -25,8 +22,7 @@ pub(crate) fn junit(difference: &Difference, sides: &Sides) -> io::Result<String
             });
         }
     }
-    report.push(suite);
-    report.to_xml()
+    suite
 }
 
 /// The outcome of one channel.

@@ -11,10 +11,10 @@
 //! rulings -> difference          the structure of a difference, with the referee's rulings
 //! unit -> compare                compares two recordings
 //! rule                           which side is right, where there is a scene
-//! words -> screen, html, junit   reports for people and for CI
-//! explorer                       the part of the page that answers when asked
-//! summary                        the report for programs
-//! folder                         all reports as files
+//! words, junit, summary          sentences, test results, and what programs read
+//! explorer, pictures             the part of the page that answers when asked, and its pictures
+//! document                       all of it as one document, which every report prints
+//! folder                         the reports as files
 //! ```
 //!
 //! ```
@@ -39,13 +39,13 @@
 mod cells;
 mod compare;
 mod difference;
+mod document;
 mod explorer;
 mod folder;
-mod html;
 mod junit;
+mod pictures;
 mod rule;
 mod rulings;
-mod screen;
 mod summary;
 mod unit;
 mod words;
@@ -53,11 +53,10 @@ mod words;
 pub use cells::{CellDifference, Thresholds};
 pub use compare::{DiffError, diff};
 pub use difference::{ChannelDifference, Difference, Sides};
-pub use folder::{WrittenDiff, write_diff};
+pub use document::{diff_document, diff_document_with_pictures};
+pub use folder::write_diff;
 pub use rule::rule;
 pub use rulings::{ChannelRuling, RuledCell, Rulings};
-pub use screen::{diff_screen, diff_text};
-pub use summary::diff_json;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -1,35 +1,22 @@
 //! `summary.json` of a comparison, for programs. `docs/guide/diff.md` lists the keys.
 
-use raypencil_report::VERSION;
 use raypencil_scene::Place;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use crate::difference::{ChannelDifference, Difference, Sides};
 use crate::rulings::{ChannelRuling, Rulings};
 use crate::words::class_name;
 
-/// Number of the format. It grows when a key changes its meaning or goes away.
-const FORMAT: u32 = 1;
-
-/// The JSON document. A statistic that is not finite is null; a cell's value that is not finite is a string such as
+/// The keys of a difference. A statistic that is not finite is null; a cell's value that is not finite is a string such as
 /// `"NaN"`.
-pub fn diff_json(difference: &Difference, sides: &Sides) -> String {
+pub(crate) fn diff_data(difference: &Difference, sides: &Sides) -> Map<String, Value> {
     let side = |index: usize| {
         let files: Vec<String> =
             sides.channels[index].files.iter().map(|file| file.display().to_string()).collect();
         json!({ "path": sides.names[index], "files": files })
     };
     let thresholds = &difference.thresholds;
-    let equal = difference.channels.iter().all(|channel| channel.unequal == 0);
-    let verdict = match (difference.passes(), equal) {
-        (false, _) => "differs",
-        (true, true) => "equal",
-        (true, false) => "within_thresholds",
-    };
-    let summary = json!({
-        "format": FORMAT,
-        "version": VERSION,
-        "verdict": verdict,
+    let keys = json!({
         "a": side(0),
         "b": side(1),
         "thresholds": {
@@ -45,7 +32,10 @@ pub fn diff_json(difference: &Difference, sides: &Sides) -> String {
         "only_a": difference.only[0],
         "only_b": difference.only[1],
     });
-    format!("{summary:#}\n")
+    match keys {
+        Value::Object(keys) => keys,
+        _ => Map::new(),
+    }
 }
 
 /// The referee's rulings, channel by channel.

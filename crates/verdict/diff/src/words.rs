@@ -13,7 +13,7 @@ const MAX_NAMED_KEYS: usize = 6;
 /// Maximum number of wrong cells that are described for a channel.
 const MAX_SHOWN_WRONG_CELLS: usize = 2;
 
-/// The referee's rulings, one line for each channel and one for each of its first wrong cells. The last line is empty.
+/// The referee's rulings, one line for each channel and one for each of its first wrong cells.
 pub(crate) fn rulings(difference: &Difference) -> Vec<String> {
     let Some(rulings) = &difference.rulings else { return Vec::new() };
     let mut lines = Vec::new();
@@ -41,9 +41,6 @@ pub(crate) fn rulings(difference: &Difference) -> Vec<String> {
             "not ruled on, since the scene has no such channel: {}",
             first_keys(&rulings.not_ruled)
         ));
-    }
-    if !lines.is_empty() {
-        lines.push(String::new());
     }
     lines
 }

@@ -68,7 +68,7 @@ pub(crate) struct Diff {
     #[arg(long, value_name = "ARITHMETIC", default_value = "f64", requires = "scene", value_parser = precision())]
     pub(crate) arithmetic: Precision,
 
-    /// Folder for report.html, junit.xml and summary.json; without it none are written.
+    /// Folder for report.html, junit.xml, summary.md and summary.json; without it none are written.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
 }

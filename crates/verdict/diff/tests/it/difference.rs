@@ -1,11 +1,11 @@
 //! Thresholds by hand-derived numbers, sides that do not fit together, and the reports.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use raypencil_diff::{
-    CellDifference, ChannelDifference, ChannelRuling, RuledCell, Rulings, Sides, Thresholds, diff,
-    diff_screen, diff_text, write_diff,
+    CellDifference, ChannelDifference, ChannelRuling, Difference, RuledCell, Rulings, Sides, Thresholds,
+    diff, diff_document, write_diff,
 };
 use raypencil_files::{Channel, Channels, Storage, Values};
 use raypencil_judge::Class;
@@ -218,6 +218,16 @@ fn text_of_page(html: &str) -> String {
     pieces.filter(|text| !text.is_empty()).collect::<Vec<_>>().join("\n")
 }
 
+/// The screen of a terminal of 100 characters.
+fn diff_screen(difference: &Difference, sides: &Sides) -> String {
+    diff_document(difference, sides).screen_of_width(100)
+}
+
+/// The same for a file or another program.
+fn diff_text(difference: &Difference, sides: &Sides) -> String {
+    diff_document(difference, sides).screen()
+}
+
 /// Compares a report with its snapshot. The version is left out.
 fn assert_report(name: &str, text: &str) {
     insta::with_settings!({ filters => vec![(r"raypencil \d+\.\d+\.\d+", "raypencil [version]")] }, {
@@ -230,13 +240,12 @@ fn screens_are_as_the_snapshots_show() {
     let [a, b] = two_recordings();
     let sides = Sides { names: ["left", "right"], channels: [&a, &b] };
     let difference = diff(&a, &b, &NONE).unwrap();
-    let folder = Path::new("out");
-    assert_report("screen_of_a_failure", &diff_screen(&difference, &sides, Some(folder)));
-    assert_report("screen_with_rulings", &diff_screen(&difference.with_rulings(rulings()), &sides, None));
+    assert_report("screen_of_a_failure", &diff_screen(&difference, &sides));
+    assert_report("screen_with_rulings", &diff_screen(&difference.with_rulings(rulings()), &sides));
     let thresholds =
         Thresholds { fail_ulp: 4.0, fail_percent: 70.0, hard_fail: None, shared_only: true, ..NONE };
     let within = diff(&a, &b, &thresholds).unwrap();
-    assert_report("screen_within_thresholds", &diff_screen(&within, &sides, None));
+    assert_report("screen_within_thresholds", &diff_screen(&within, &sides));
 }
 
 #[test]
@@ -250,15 +259,15 @@ fn a_screen_stays_one_screen() {
     let difference = diff(&a, &b, &NONE).unwrap();
     let long = "x/".repeat(200);
     let sides = Sides { names: [&long, "b"], channels: [&a, &b] };
-    let screen = diff_screen(&difference, &sides, None);
+    let screen = diff_screen(&difference, &sides);
     assert!(screen.lines().count() <= 40, "{screen}");
     assert!(screen.lines().all(|line| line.chars().count() <= 100), "{screen}");
     // 60 channels differ, of which 12 are listed.
     assert!(screen.contains("and 48 channels that are not the same"), "{screen}");
-    assert!(screen.contains("FAIL 60 of 60 channels differ."), "{screen}");
+    assert!(screen.contains("✗ 60 of 60 channels differ."), "{screen}");
     assert_report("screen_of_many_channels", &screen);
-    let same = diff_screen(&diff(&a, &a, &NONE).unwrap(), &sides, None);
-    assert!(same.contains("PASS 60 channels compared, the same in every cell."), "{same}");
+    let same = diff_screen(&diff(&a, &a, &NONE).unwrap(), &sides);
+    assert!(same.contains("✓ 60 channels compared, the same in every cell."), "{same}");
     assert!(same.contains("Allowed: no difference."), "{same}");
     assert_report("screen_of_equal_recordings", &same);
 }
@@ -277,13 +286,16 @@ fn channels_on_one_side_are_named_in_full() {
     let sides = Sides { names: ["a", "b"], channels: [&a, &b] };
     for shared_only in [false, true] {
         let difference = diff(&a, &b, &Thresholds { shared_only, ..NONE }).unwrap();
-        for screen in [diff_screen(&difference, &sides, None), diff_text(&difference, &sides, None)] {
+        for (screen, most) in
+            [(diff_screen(&difference, &sides), 100), (diff_text(&difference, &sides), usize::MAX)]
+        {
             for k in 0..6 {
                 assert!(screen.contains(&key(k)), "{screen}");
             }
-            assert!(screen.contains(&format!("only in A: {}", key(0))) && !screen.contains('…'), "{screen}");
-            assert_eq!(screen.contains("not counted: --shared-only)"), shared_only, "{screen}");
-            assert!(screen.lines().all(|line| line.chars().count() <= 100), "{screen}");
+            assert!(screen.contains(&format!("Only in A: {}", key(0))) && !screen.contains('…'), "{screen}");
+            let words = screen.split_whitespace().collect::<Vec<_>>().join(" ");
+            assert_eq!(words.contains("not counted: --shared-only)"), shared_only, "{screen}");
+            assert!(screen.lines().all(|line| line.chars().count() <= most), "{screen}");
         }
     }
 }
@@ -300,8 +312,8 @@ fn a_text_that_is_not_for_a_terminal_is_not_cut() {
     let (difference, sides) =
         (diff(&a, &b, &NONE).unwrap(), Sides { names: [&long, "b"], channels: [&a, &b] });
     let whole = |text: &str| text.contains(&key) && text.contains(&long) && !text.contains('…');
-    assert!(whole(&diff_text(&difference, &sides, None)));
-    assert!(!whole(&diff_screen(&difference, &sides, None)));
+    assert!(whole(&diff_text(&difference, &sides)));
+    assert!(!whole(&diff_screen(&difference, &sides)));
 }
 
 #[test]
@@ -310,8 +322,9 @@ fn a_folder_is_complete_and_its_files_escape_names() {
     let difference = diff(&a, &b, &NONE).unwrap().with_rulings(rulings());
     let sides = Sides { names: ["left & <right>", "b"], channels: [&a, &b] };
     let folder = tempfile::tempdir().unwrap();
-    let written = write_diff(&difference, &sides, folder.path(), &Silent).unwrap();
-    let html = std::fs::read_to_string(&written.report).unwrap();
+    write_diff(&difference, &sides, folder.path(), &Silent).unwrap();
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    let html = read("report.html");
     assert!(html.contains("<h3>&#60;b&#62; "), "names are escaped");
     assert!(html.contains("left &#38; &#60;right&#62;"), "names of sides are escaped");
     // Three pictures of each of two channels.
@@ -319,12 +332,12 @@ fn a_folder_is_complete_and_its_files_escape_names() {
     assert!(!html.contains("http://") && !html.contains("src=\"/"), "the page has no links");
     assert!(html.contains("NaN or infinite on one side") && html.contains("not the same"));
     assert_report("text_of_the_page", &text_of_page(&html));
-    let junit = std::fs::read_to_string(&written.junit).unwrap();
+    assert!(read("summary.md").contains(r"left \& \<right\>"), "{}", read("summary.md"));
+    let junit = read("junit.xml");
     // Three channels on both sides and one on each side only; the equal one does not fail.
     assert!(junit.contains("failures=\"4\"") && junit.contains("tests=\"5\""), "{junit}");
     assert_report("junit", &junit);
-    let summary: serde_json::Value =
-        serde_json::from_str(&std::fs::read_to_string(&written.summary).unwrap()).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&read("summary.json")).unwrap();
     assert_eq!(summary["verdict"], "differs");
     let channel = &summary["channels"][0];
     assert_eq!((&channel["worst"]["a"], &channel["worst"]["b"]), (&"NaN".into(), &1.0.into()));

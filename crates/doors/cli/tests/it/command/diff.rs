@@ -35,16 +35,16 @@ fn a_folder_is_the_same_as_itself() {
     let screen = screen(folder.path(), &["diff", "tracer", "tracer"], 0);
     // Camera: range, depth, P, N, face, incidence and one beam's flux; the beam: no depth, but visible,
     // pixel I and J and flux.
-    assert!(screen.contains("PASS 28 channels compared, the same in every cell."), "{screen}");
+    assert!(screen.contains("✓ 28 channels compared, the same in every cell."), "{screen}");
     let one = raypencil(folder.path(), &["diff", "tracer/camera.exr", "tracer/camera.exr"]);
-    assert!(text(&one.stdout).contains("PASS 11 channels compared"), "{}", text(&one.stdout));
+    assert!(text(&one.stdout).contains("✓ 11 channels compared"), "{}", text(&one.stdout));
 }
 
 #[test]
 fn two_renderers_agree_to_a_rounding() {
     let folder = rendered();
     let screen = screen(folder.path(), &["diff", "scanline", "tracer", "--fail-ulp", "1"], 0);
-    assert!(screen.contains("PASS 28 channels compared"), "{screen}");
+    assert!(screen.contains("✓ 28 channels compared"), "{screen}");
     assert!(screen.contains("Allowed: 1 ulp."), "{screen}");
 }
 
@@ -79,7 +79,7 @@ fn no_threshold_allows_a_nan() {
     let allow =
         ["diff", "scanline", "tracer", "--fail", "1e9", "--fail-relative", "1e9", "--fail-ulp", "1e9"];
     let shown = screen(folder.path(), &allow, 1);
-    assert!(shown.contains("FAIL 1 of 28 channels differs."), "{shown}");
+    assert!(shown.contains("✗ 1 of 28 channels differs."), "{shown}");
     assert!(
         shown.contains("camera/depth.Z") && shown.contains("!   at 12,34: A ") && shown.contains("B NaN"),
         "{shown}"
@@ -126,7 +126,7 @@ fn arrays_and_maps_can_be_compared() {
     let shown = screen(folder.path(), &["diff", "mine", "tracer"], 1);
     assert!(shown.contains("only in B: ") && shown.contains("; 27 channels are on one side only"), "{shown}");
     let shown = screen(folder.path(), &["diff", "mine", "tracer", "--shared-only"], 0);
-    assert!(shown.contains("PASS 1 channel compared, the same in every cell."), "{shown}");
+    assert!(shown.contains("✓ 1 channel compared, the same in every cell."), "{shown}");
 }
 
 #[test]

@@ -1,20 +1,16 @@
-//! `report.html` of a comparison: one file without links, with pictures of the channels that are not equal.
+//! Pictures of the channels that are not equal: their difference, and both sides on one scale.
 
 use askama::Template;
 use raypencil_files::{Storage, Values};
 use raypencil_report::{
-    ColourMap, Picture, Reduction, Scale, Tick, VERSION, cells_axis, count, counted, max_side_of_pictures,
-    number, page_head, quantity, reduced_to, shape, stretch,
+    ColourMap, Picture, Reduction, Scale, Tick, cells_axis, count, counted, max_side_of_pictures, reduced_to,
+    shape, stretch,
 };
 use raypencil_scene::{Image, Maybe};
 
 use crate::cells::{Comparison, compare_numbers};
 use crate::difference::{ChannelDifference, Difference, Sides};
-use crate::explorer::explorer;
-use crate::words::{allowed, exact, headline, rulings, unequal};
-
-/// CSS rules of this page, beside those of every report.
-const STYLE: &str = "table.classes td { white-space: nowrap; }\n";
+use crate::words::unequal;
 
 /// Maximum number of channels with pictures; the table has all channels.
 const MAX_PICTURED_CHANNELS: usize = 24;
@@ -23,34 +19,9 @@ const MAX_PICTURED_CHANNELS: usize = 24;
 const PICTURES_PER_CHANNEL: u64 = 3;
 
 #[derive(Template)]
-#[template(path = "diff.html")]
-struct Page<'a> {
-    /// Everything before the page's first line, with the styles.
-    head: String,
-    passes: bool,
-    headline: String,
-    names: [&'a str; 2],
-    allowed: String,
-    version: &'static str,
-    rows: Vec<Row>,
-    only: Vec<(&'static str, &'a [String])>,
-    /// Lines of the referee's rulings; empty without a scene.
-    rulings: Vec<String>,
+#[template(path = "pictures.html")]
+struct Pictures {
     channels: Vec<Section>,
-    /// How many more channels are not equal but have no pictures; else empty.
-    more: String,
-    /// Which channels the explorer leaves out; empty if none.
-    left_out: String,
-    /// Data, style and script of the part that answers when asked, as HTML.
-    explorer: String,
-}
-
-/// A channel in the table.
-struct Row {
-    key: String,
-    fails: bool,
-    numbers: [String; 7],
-    worst: Option<[String; 3]>,
 }
 
 /// A channel in pictures.
@@ -82,58 +53,18 @@ struct Figure {
     empty: &'static str,
 }
 
-/// The page.
-pub(crate) fn html(difference: &Difference, sides: &Sides) -> Result<String, askama::Error> {
+/// The pictures as HTML, and in words how many more channels are not equal; empty if none.
+pub(crate) fn pictures(difference: &Difference, sides: &Sides) -> Result<(String, String), askama::Error> {
     let unequal = unequal(difference);
     let pictured = &unequal[..unequal.len().min(MAX_PICTURED_CHANNELS)];
     let sizes: Vec<(u32, u32)> = pictured.iter().map(|channel| (channel.width, channel.height)).collect();
     let max_side = max_side_of_pictures(&sizes, PICTURES_PER_CHANNEL);
-    let equal = difference.channels.iter().filter(|channel| channel.unequal == 0);
-    let more = unequal.len() - pictured.len();
-    let headline = headline(difference);
-    let sign = if difference.passes() { "PASS" } else { "FAIL" };
-    let (explorer, left_out) = explorer(difference, sides);
-    let page = Page {
-        head: page_head(&format!("{sign} {headline}"), STYLE),
-        passes: difference.passes(),
-        headline,
-        names: sides.names,
-        allowed: allowed(&difference.thresholds),
-        version: VERSION,
-        rows: unequal.iter().copied().chain(equal).map(row).collect(),
-        only: ["A", "B"]
-            .into_iter()
-            .zip(difference.only.iter().map(Vec::as_slice))
-            .filter(|(_, keys)| !keys.is_empty())
-            .collect(),
-        rulings: rulings(difference).into_iter().filter(|line| !line.is_empty()).collect(),
-        channels: pictured.iter().map(|channel| section(channel, sides, max_side)).collect(),
-        more: if more > 0 { counted(more as u64, "more channel", "more channels") } else { String::new() },
-        left_out,
-        explorer,
+    let more = match unequal.len() - pictured.len() {
+        0 => String::new(),
+        more => format!("{} without pictures.", counted(more as u64, "more channel", "more channels")),
     };
-    page.render()
-}
-
-/// A channel's line of the table.
-fn row(channel: &ChannelDifference) -> Row {
-    let optional = |value: Option<f64>| value.map_or("–".into(), number);
-    Row {
-        key: channel.key.clone(),
-        fails: channel.fails,
-        numbers: [
-            count(channel.cells()),
-            count(channel.differing),
-            format!("{} %", number(channel.percent())),
-            channel.largest.map_or("–".into(), |largest| quantity(largest, &channel.unit)),
-            optional(channel.largest_ulp),
-            optional(channel.rms),
-            optional(channel.mean),
-        ],
-        worst: channel
-            .worst
-            .map(|worst| [format!("{},{}", worst.i, worst.j), exact(worst.a), exact(worst.b)]),
-    }
+    let channels = pictured.iter().map(|channel| section(channel, sides, max_side)).collect();
+    Ok((Pictures { channels }.render()?, more))
 }
 
 /// A channel's pictures.
