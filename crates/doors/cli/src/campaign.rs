@@ -6,8 +6,8 @@ use std::time::Instant;
 use indicatif::ProgressBar;
 use raypencil::Progress;
 use raypencil::campaign::{
-    Campaign, CampaignProgress, Merged, OwnScenes, PartName, Shard, campaign_json, campaign_screen, merge,
-    run_shard, scene_of, write_campaign,
+    Campaign, CampaignProgress, Merged, OwnScenes, PartName, Shard, campaign_document, merge, run_shard,
+    scene_of, write_campaign,
 };
 use raypencil::io::{MIN_ABANDONED_AGE, create_folder, remove_abandoned, write_resolved};
 
@@ -98,7 +98,8 @@ fn merged(command: &CampaignMerge, json: bool) -> Result<Outcome, Trouble> {
 
 /// Prints the result and tells the exit code.
 fn tell(merged: &Merged, json: bool, time: &str) -> Result<Outcome, Trouble> {
-    say(&if json { campaign_json(merged) } else { campaign_screen(merged) + time });
+    let document = campaign_document(merged, |_| false);
+    say(&if json { document.json() } else { document.screen() + time });
     Ok(if merged.passes() { Outcome::Fine } else { Outcome::Differs })
 }
 

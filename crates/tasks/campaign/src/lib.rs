@@ -15,7 +15,7 @@
 //! terrain -> shard   runs one terrain; runs the terrains of a shard
 //! merge -> totals    the records of all shards; counts and worst errors over them
 //! records            the same files as bytes, for fuzz targets
-//! summary, screen, page   reports for programs and for people, on a screen and as HTML
+//! summary -> document     what programs read; all of it as one document, which every report prints
 //! ```
 //!
 //! ```
@@ -31,31 +31,30 @@
 
 mod candidate;
 pub mod cases;
+mod document;
 mod error;
 mod merge;
 mod own_scenes;
-mod page;
 mod plan;
 mod record;
 mod record_check;
 pub mod records;
 mod scenes;
-mod screen;
 mod sealed;
 mod shard;
 mod summary;
 mod terrain;
 mod totals;
 
+pub use document::campaign_document;
 pub use error::CampaignError;
 pub use merge::{Merged, merge};
 pub use own_scenes::OwnScenes;
 pub use plan::{Campaign, MAX_SHARDS, MAX_TERRAINS, Shard};
 pub use record::{PartName, PartRecord, QuantityRecord, TerrainRecord, WorstRecord, WrongRay};
 pub use scenes::scene_of;
-pub use screen::campaign_screen;
 pub use shard::{CampaignProgress, has_result, run_shard};
-pub use summary::{campaign_json, write_campaign};
+pub use summary::write_campaign;
 pub use terrain::terrain;
 
 #[cfg(doctest)]

@@ -3,23 +3,20 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use raypencil_files::{FileError, FolderError, begin_output_folder, write_atomically};
+use raypencil_files::{FileError, FolderError, write_texts};
 use raypencil_judge::{COMPARE_CLASSES, class_counts_json};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
+use crate::document::campaign_document;
 use crate::merge::Merged;
-use crate::page::campaign_html;
 use crate::record::{PartName, probe_arguments};
 use crate::totals::{CampaignTotal, WorstRay, wrong_rays};
-
-/// Number of the format. It grows when a key changes its meaning or goes away.
-const FORMAT: u32 = 1;
 
 /// Maximum number of wrong rays that are listed.
 const MAX_LISTED_RAYS: usize = 100;
 
-/// The JSON document. Its schema is `docs/formats/campaign.schema.json`.
-pub fn campaign_json(merged: &Merged) -> String {
+/// What the document says to programs. Its schema is `docs/formats/campaign.schema.json`.
+pub(crate) fn campaign_data(merged: &Merged) -> Map<String, Value> {
     let worst = |worst: &Option<WorstRay<'_>>| {
         worst.map(|WorstRay { record, terrain, part }| {
             json!({
@@ -68,22 +65,15 @@ pub fn campaign_json(merged: &Merged) -> String {
     let warnings = found
         .iter()
         .map(|(part, warning)| json!({ "code": warning.code, "part": part, "sentence": warning.sentence }));
-    let verdict = match (merged.passes(), all.compared > 0 && all.hits == 0) {
-        (true, _) => "agree",
-        (false, true) => "nothing_hit",
-        (false, false) => "defects",
-    };
     let failures: Vec<Value> = merged
         .failures()
         .map(|(terrain, part, why)| json!({ "terrain": terrain, "part": part, "message": why }))
         .collect();
     let document = json!({
-        "format": FORMAT,
         "version": merged.campaign.version,
         "seed": merged.campaign.seed,
         "terrains": merged.campaign.terrains,
         "faces": { "least": faces.iter().min(), "most": faces.iter().max(), "total": faces.iter().sum::<u64>() },
-        "verdict": verdict,
         "warnings": warnings.collect::<Vec<_>>(),
         "all": total(&all),
         "parts": parts,
@@ -91,22 +81,22 @@ pub fn campaign_json(merged: &Merged) -> String {
         "no_answer": failures,
         "first_wrong": wrong.take(MAX_LISTED_RAYS).collect::<Vec<_>>(),
     });
-    format!("{document:#}\n")
+    match document {
+        Value::Object(keys) => keys,
+        _ => Map::new(),
+    }
 }
 
-/// Writes `report.html`, and last `summary.json`, into a folder. Returns the path of the summary.
+/// Writes `report.html`, `junit.xml`, `summary.md`, and last `summary.json`, into a folder. Returns the path of the summary.
 ///
 /// # Errors
 /// Names the file or folder that could not be written, and why.
 pub fn write_campaign(merged: &Merged, folder: &Path) -> Result<PathBuf, FolderError> {
-    let path = begin_output_folder(folder, "summary.json")?;
-    let report = folder.join("report.html");
-    let page = campaign_html(merged, |path| folder.join(path).is_file()).map_err(|error| FileError::Io {
-        path: report.clone(),
-        action: "write",
-        source: std::io::Error::other(error),
-    })?;
-    write_atomically(&report, |file| file.write_all(page.as_bytes()))?;
-    write_atomically(&path, |file| file.write_all(campaign_json(merged).as_bytes()))?;
-    Ok(path)
+    const DATA: &str = "summary.json";
+    let texts = campaign_document(merged, |path| folder.join(path).is_file()).files(DATA);
+    write_texts(
+        folder,
+        &texts.map_err(|(name, source)| FileError::io(&folder.join(name), "write", source))?,
+    )?;
+    Ok(folder.join(DATA))
 }

@@ -2,11 +2,19 @@
 
 use raypencil_campaign::{
     Campaign, Merged, PartName, PartRecord, QuantityRecord, TerrainRecord, WorstRecord, WrongRay,
-    campaign_json, campaign_screen, terrain, write_campaign,
+    campaign_document, terrain, write_campaign,
 };
 use raypencil_judge::Quantity;
 use raypencil_tests::schema::schema_faults;
 use serde_json::Value;
+
+fn campaign_screen(merged: &Merged) -> String {
+    campaign_document(merged, |_| false).screen()
+}
+
+fn campaign_json(merged: &Merged) -> String {
+    campaign_document(merged, |_| false).json()
+}
 
 /// A wrong ray.
 fn wrong_ray() -> WrongRay {
@@ -56,6 +64,11 @@ fn screens_are_as_the_snapshots_show() {
     );
     let with_defects = made_up([990, 6, 2, 0, 1, 1], vec![wrong_ray()]);
     insta::assert_snapshot!("screen_with_defects", campaign_screen(&with_defects));
+    insta::assert_snapshot!("markdown_with_defects", campaign_document(&with_defects, |_| false).markdown());
+    insta::assert_snapshot!(
+        "junit_with_defects",
+        campaign_document(&with_defects, |_| false).junit().unwrap()
+    );
 }
 
 #[test]
@@ -81,9 +94,9 @@ fn a_campaign_in_which_nothing_is_hit_is_no_pass() {
     assert!(!nothing.passes());
     assert_eq!(codes(&nothing), ["no_hits"; 4]);
     let screen = campaign_screen(&nothing);
-    assert!(screen.ends_with("? Nothing is hit: all 8,000 rays miss the terrain.\n"), "{screen}");
+    assert!(screen.contains("\n? Nothing is hit: all 8,000 rays miss the terrain.\n"), "{screen}");
     assert!(
-        screen.contains("warning: scenes `own`: none of its 2,000 rays hits") && !screen.contains('✓'),
+        screen.contains("Warning: scenes own: none of its 2,000 rays hits") && !screen.contains('✓'),
         "{screen}"
     );
     let summary: Value = serde_json::from_str(&campaign_json(&nothing)).unwrap();
@@ -141,7 +154,7 @@ fn the_page_counts_lists_and_links() {
     at("<a href=\"wrong/terrain-000000-own-smallest.md\">smallest scene</a>");
     at("<a href=\"wrong/terrain-000000-own.toml\">whole scene</a>");
     assert_eq!(page.matches("<a href").count(), 2);
-    at("beam-0 3,1</b>, range: 1 m and 2 m");
+    at("beam-0 3,1</b>, range. 1 m and 2 m");
     at("raypencil probe DIR/scene.toml --beam 0 --pencil 3,1");
 }
 
@@ -173,14 +186,11 @@ fn the_page_of_a_hunt_says_what_is_hunted_and_what_failed() {
     assert!(!merged.passes());
     assert_eq!(merged.failures().collect::<Vec<_>>(), [(1, PartName::Own, "it ended with exit status: 3")]);
     let failed = page(&merged, &[]);
-    assert!(
-        failed.contains("gave no answer for some scenes") && !failed.contains("Nothing is hit"),
-        "{failed}"
-    );
-    assert!(failed.contains("terrain 1 own: it ended with exit status: 3"), "{failed}");
+    assert!(failed.contains("1 scene has no answer") && !failed.contains("Nothing is hit"), "{failed}");
+    assert!(failed.contains("terrain 1 own: no answer: it ended with exit status: 3"), "{failed}");
     let screen = campaign_screen(&merged);
     assert!(
-        screen.contains("under test: my <tracer>") && screen.contains("1 scenes have no answer"),
+        screen.contains("under test: my <tracer>") && screen.contains("1 scene has no answer"),
         "{screen}"
     );
     let json: Value = serde_json::from_str(&campaign_json(&merged)).unwrap();
