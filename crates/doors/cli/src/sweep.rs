@@ -6,7 +6,7 @@ use indicatif::ProgressBar;
 use raypencil::io::{MIN_ABANDONED_AGE, remove_abandoned};
 use raypencil::sweep::{
     Axis, Chart, Finished, Part, Sweep, SweepProgress, SweepTable, Task, default_charts, finish, read_plan,
-    run_part, sweep_json, sweep_screen, write_sweep,
+    run_part, sweep_document, write_sweep,
 };
 
 use crate::args::{self, DEFAULT_WITH, DRIVE_WITH, SweepCommand, SwitchArguments};
@@ -112,10 +112,8 @@ fn tell(finished: &Finished, charts: &[Chart], folder: &Path, json: bool) -> Res
     let table = SweepTable::new(finished);
     let mut all = default_charts(&table, finished.sweep.task);
     all.extend(charts.iter().filter(|chart| !all.contains(chart)).cloned().collect::<Vec<_>>());
-    let written = write_sweep(&table, &all, folder)?;
-    say(&match json {
-        true => sweep_json(finished, &table, &written),
-        false => sweep_screen(finished, &table, &written),
-    });
+    let written = write_sweep(finished, &table, &all, folder)?;
+    let document = sweep_document(finished, &table, &written, &[]);
+    say(&if json { document.json() } else { document.screen() });
     Ok(if finished.passes() { Outcome::Fine } else { Outcome::Differs })
 }

@@ -17,28 +17,31 @@
 //! run        makes the runs of a part; joins the records of all parts
 //! table      a row for each run, as CSV and Parquet
 //! chart      a result against a parameter, as SVG and PNG
-//! screen     a finished sweep as text and JSON
+//! files      a finished sweep as files
+//! document   the same as one document, which every report prints
 //! ```
 
 mod axis;
 mod chart;
+mod document;
 mod error;
+mod files;
 mod plan;
 mod record;
 mod results;
 mod run;
-mod screen;
 mod table;
 mod work;
 
 pub use axis::Axis;
 pub use chart::Chart;
+pub use document::{Drawn, sweep_document};
 pub use error::SweepError;
+pub use files::{Written, default_charts, write_sweep};
 pub use plan::{MAX_RUNS, Part, Sweep, Task};
 pub use record::Outcome;
 pub use results::Named;
 pub use run::{Finished, SweepProgress, finish, has_part, read_plan, run_part};
-pub use screen::{Written, default_charts, sweep_json, sweep_screen, write_sweep};
 pub use table::{Cells, Column, SweepTable};
 
 /// The README's example, compiled and run with the documentation tests.

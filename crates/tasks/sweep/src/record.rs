@@ -41,6 +41,16 @@ impl Outcome {
         let plain = why.chars().map(|c| if c.is_control() { ' ' } else { c });
         Self::Refused(plain.take(MAX_TEXT_CHARS).collect())
     }
+
+    /// Whether the run was made, and its comparison passed if it is one.
+    pub fn passes(&self) -> bool {
+        match self {
+            Self::Refused(_) => false,
+            Self::Results(results) => {
+                results.iter().all(|(name, value)| name != "passes" || *value == Value::Bool(true))
+            }
+        }
+    }
 }
 
 #[derive(Debug, Serialize, Deserialize)]

@@ -78,7 +78,7 @@ fn finished(sweep: &Sweep, folder: &Path) -> Finished {
 
 /// The table as bytes of its two files.
 fn files(finished: &Finished, folder: &Path) -> [Vec<u8>; 2] {
-    let written = write_sweep(&SweepTable::new(finished), &[], folder).unwrap();
+    let written = write_sweep(finished, &SweepTable::new(finished), &[], folder).unwrap();
     written.tables.map(|file| fs::read(file).unwrap())
 }
 
@@ -260,8 +260,15 @@ fn the_table_reads_back_from_parquet_and_csv() {
         Sweep::new(house.scene.to_str().unwrap(), axes, Task::Render, vec!["tracer".into()], false).unwrap();
     let folder = house.folder("a");
     made(&sweep, Part::WHOLE, &folder);
-    let table = SweepTable::new(&finished(&sweep, &folder));
-    let written = write_sweep(&table, &[], &folder).unwrap();
+    let finished = finished(&sweep, &folder);
+    let table = SweepTable::new(&finished);
+    let written = write_sweep(&finished, &table, &[], &folder).unwrap();
+    // The reports beside the table: a row and a test case for each run.
+    let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
+    let runs = table.runs();
+    assert_eq!(read("report.html").matches("<th scope=\"row\">").count(), runs);
+    assert!(read("junit.xml").contains(&format!("tests=\"{runs}\" skipped=\"0\" failures=\"0\"")));
+    assert!(read("summary.md").contains(&format!("{runs} runs, all made")));
     let types: Vec<&str> = table.columns[..4]
         .iter()
         .map(|column| match column.cells {

@@ -1,0 +1,100 @@
+//! A finished sweep as files.
+
+use std::path::{Path, PathBuf};
+
+use raypencil_files::{FileError, create_folder, write_atomically, write_texts};
+
+use crate::chart::Chart;
+use crate::document::{Drawn, sweep_document};
+use crate::error::SweepError;
+use crate::plan::Task;
+use crate::run::Finished;
+use crate::table::SweepTable;
+
+/// Results that a screen and the default charts show.
+pub(crate) fn main_results(task: Task) -> &'static [&'static str] {
+    match task {
+        Task::Validate => &["compared", "tie", "rounding", "approximation", "undecided", "defects"],
+        Task::Render => &["camera.hits", "beam-0.visible_share", "beam-0.lit_pixels", "beam-0.flux_w"],
+        Task::Drive => &[
+            "truth.found_share",
+            "truth.missed_share",
+            "truth.false_share",
+            "truth.clear_way_mean_m",
+            "driven_m",
+        ],
+    }
+}
+
+/// The charts that are drawn without being asked for: the main results against each parameter that has several numbers.
+pub fn default_charts(table: &SweepTable, task: Task) -> Vec<Chart> {
+    let mut charts = Vec::new();
+    // Of a validation there is nothing to draw: it agrees, or its report says where not.
+    if task == Task::Validate {
+        return charts;
+    }
+    for parameter in &table.columns[1..=table.parameters] {
+        let given = (0..table.runs()).filter(|&run| !parameter.cells.text(run).is_empty());
+        let mut values: Vec<Option<f64>> = given.map(|run| parameter.cells.number(run)).collect();
+        values.dedup();
+        if values.len() < 2 || values.contains(&None) {
+            continue;
+        }
+        for result in main_results(task).iter().take(3) {
+            let is_number = |column: &crate::table::Column| {
+                (0..table.runs()).any(|run| column.cells.number(run).is_some())
+            };
+            if table.column(result).is_some_and(is_number) {
+                charts.push(Chart {
+                    result: result.to_string(),
+                    parameter: parameter.name.clone(),
+                    lines: None,
+                });
+            }
+        }
+    }
+    charts
+}
+
+/// Files of a sweep.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Written {
+    /// The table as CSV and as Parquet.
+    pub tables: [PathBuf; 2],
+    /// Each chart as SVG and as PNG.
+    pub charts: Vec<PathBuf>,
+}
+
+/// Writes the table, the charts, and the reports `report.html`, `junit.xml` and `summary.md`.
+///
+/// # Errors
+/// A folder or a file that cannot be written; a chart of names that the table does not have.
+pub fn write_sweep(
+    finished: &Finished,
+    table: &SweepTable,
+    charts: &[Chart],
+    folder: &Path,
+) -> Result<Written, SweepError> {
+    create_folder(folder)?;
+    let tables = [folder.join("table.csv"), folder.join("table.parquet")];
+    table.write_csv(&tables[0])?;
+    table.write_parquet(&tables[1])?;
+    let mut written = Written { tables, charts: Vec::new() };
+    let mut drawn = Vec::new();
+    if !charts.is_empty() {
+        create_folder(&folder.join("charts"))?;
+    }
+    for chart in charts {
+        let drawing = chart.draw(table)?;
+        let file = |ending: &str| folder.join("charts").join(format!("{}.{ending}", chart.file_stem()));
+        write_atomically(file("svg"), |out| out.write_all(drawing.svg().as_bytes()))?;
+        write_atomically(file("png"), |out| out.write_all(&drawing.png()))?;
+        written.charts.extend([file("svg"), file("png")]);
+        drawn.push(Drawn { name: chart.file_stem(), source: drawing.data_uri() });
+    }
+    let texts = sweep_document(finished, table, &written, &drawn).files("summary.json");
+    let texts = texts.map_err(|(name, source)| FileError::io(&folder.join(name), "write", source))?;
+    // What programs read is the table; the summary is printed.
+    write_texts(folder, &texts[..3])?;
+    Ok(written)
+}
