@@ -6,8 +6,7 @@ use std::sync::Arc;
 use indicatif::ProgressBar;
 use raypencil::Progress;
 use raypencil::drive::{
-    self, DriveExtras, DriveJob, DriveProgress, RecordContents, StripeFile, drive_json, drive_screen,
-    write_drive,
+    self, DriveExtras, DriveJob, DriveProgress, RecordContents, StripeFile, drive_document, write_drive,
 };
 use raypencil::io::{DriveSetup, OutputFolder, WaypointFrame, load};
 
@@ -119,6 +118,11 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
     write_drive(&job, &run, &folder, &spinner)?;
     output.finish()?;
     drop(spinner);
-    say(&if json { drive_json(&job, &run) } else { drive_screen(&job, &run, Some(&folder)) });
+    let document = drive_document(&job, &run);
+    say(&if json { document.json() } else { document.screen() });
+    if !json {
+        let beside = "figures (svg, png), drive.png, maps (npy, tif, ply, geojson, csv, nav2), junit.xml, summary.md, summary.json";
+        say(&format!("\n{}\n  beside it: {beside}\n", folder.join("report.html").display()));
+    }
     Ok(if run.passes() { Outcome::Fine } else { Outcome::Differs })
 }

@@ -1,6 +1,5 @@
 //! Folder of a drive. Each file is written beside its place and then renamed; `summary.json` comes last.
 
-use std::io;
 use std::path::{Path, PathBuf};
 
 use raypencil_files::{FileError, FolderError, begin_output_folder, write_atomically, write_npy};
@@ -8,6 +7,7 @@ use raypencil_mesh_io::write_geotiff;
 use raypencil_scene::Progress;
 
 use crate::animation::apng;
+use crate::document::drive_document_with_pictures;
 use crate::figures::figures;
 use crate::job::DriveJob;
 use crate::labels::label_word;
@@ -17,9 +17,7 @@ use crate::maps::obstacle_grid::occupancy_grid;
 use crate::maps::occupancy::write_occupancy;
 use crate::maps::ply::write_ply;
 use crate::maps::vectors::{VectorOnMap, vectors_csv, vectors_geojson};
-use crate::page::html;
 use crate::run::DriveRun;
-use crate::summary::drive_json;
 
 /// Files that [`write_drive`] wrote.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -76,10 +74,13 @@ pub fn write_drive(
         write("navigator-map.geojson", vectors_geojson(&vectors, *frame).as_bytes())?;
         write("navigator-map.csv", vectors_csv(&vectors).as_bytes())?;
     }
-    let page = html(job, run, &figures, &animation).map_err(io::Error::other);
-    let report = folder.join("report.html");
-    let page = page.map_err(|source| FileError::Io { path: report, action: "write", source })?;
+    let texts = drive_document_with_pictures(job, run, &figures, &animation).files("summary.json");
+    let texts =
+        texts.map_err(|(name, source)| FileError::Io { path: folder.join(name), action: "write", source })?;
+    let [page, junit, markdown, data] = texts.map(|(_, text)| text);
     let report = write("report.html", page.as_bytes())?;
+    write("junit.xml", junit.as_bytes())?;
+    write("summary.md", markdown.as_bytes())?;
 
     let named = |name: &str| folder.join(name);
     write_npy(named("local-map.npy"), &[&elevation_image(&run.map)])?;
@@ -94,7 +95,7 @@ pub fn write_drive(
         files.extend(["obstacle-map-nav2.pgm", "obstacle-map-nav2.yaml"].map(named));
     }
 
-    write_atomically(&summary, |file| file.write_all(drive_json(job, run).as_bytes()))?;
+    write_atomically(&summary, |file| file.write_all(data.as_bytes()))?;
     files.push(summary.clone());
     Ok(WrittenDrive { files, report, summary })
 }

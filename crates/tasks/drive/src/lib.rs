@@ -23,13 +23,13 @@
 //!    [`StripeFile`], their stripes in place of the rover's;
 //!    `history`: the drive frame by frame, for the page;
 //!    `renderer_drive`, `run`: [`drive()`] itself and its [`DriveRun`];
-//! 8. `counts`, `facts`, `screen`, `summary`: [`drive_screen`] for people and [`drive_json`] for programs;
-//! 9. `figures`, `animation`, `maps`, `explorer`, `page`, `folder`: [`write_drive`], the folder with all files.
+//! 8. `counts`, `facts`, `summary`, `document`: [`drive_document`], which every report prints, and [`drive_json`];
+//! 9. `figures`, `animation`, `maps`, `explorer`, `folder`: [`write_drive`], the folder with all files.
 //!
 //! `docs/guide/drive.md` describes routes, settings and files.
 //!
 //! ```
-//! use raypencil_drive::{DriveJob, drive, drive_screen};
+//! use raypencil_drive::{DriveJob, drive, drive_document};
 //! use raypencil_scanline::Scanline;
 //! use raypencil_scene::Silent;
 //! use raypencil_scene_io::load_text;
@@ -44,7 +44,7 @@
 //! let job = DriveJob::new(&load_text(scene, "small")?, None, "small.toml".into())?;
 //! let run = drive(&job, &[&Scanline::default()], &Silent)?;
 //! // 0.6 m at 0.3 m/s take 2 s: 7 frames at 3 per second, both ends included.
-//! assert!(drive_screen(&job, &run, None).ends_with("\n7 frames driven.\n"));
+//! assert!(drive_document(&job, &run).screen().ends_with("\n7 frames driven.\n"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -54,6 +54,7 @@ mod beam_columns;
 mod camera_view;
 mod counts;
 mod differences;
+mod document;
 mod error;
 mod explorer;
 mod facts;
@@ -64,14 +65,12 @@ mod job;
 mod labels;
 mod maps;
 mod noise_level;
-mod page;
 mod point_errors;
 mod pointing;
 mod recorded_exposure;
 mod recording;
 mod renderer_drive;
 mod run;
-mod screen;
 mod sector_truth;
 mod sensitivity;
 mod shadow_map;
@@ -83,6 +82,7 @@ mod through_optics;
 mod warnings;
 
 pub use differences::{Differences, FluxDifferences, StageDifferences};
+pub use document::drive_document;
 pub use error::DriveError;
 pub use folder::{WrittenDrive, write_drive};
 pub use job::DriveJob;
@@ -96,7 +96,6 @@ pub use point_errors::PointErrors;
 pub use pointing::pointing_table;
 pub use recording::RecordContents;
 pub use run::{DriveExtras, DriveProgress, DriveRun, drive, drive_with};
-pub use screen::drive_screen;
 pub use sector_truth::{Missed, NotFound, SectorTruth};
 pub use sensitivity::StripeSensitivity;
 pub use stripe_file::StripeFile;

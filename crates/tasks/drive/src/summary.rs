@@ -1,7 +1,7 @@
 //! Summary of a drive for programs, `summary.json`, in SI units. Schema: `docs/formats/drive.schema.json`.
 
 use raypencil_report::VERSION;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use crate::counts::{CellCounts, scans, sector_counts};
 use crate::differences::{Differences, StageDifferences};
@@ -32,8 +32,13 @@ use crate::sector_truth::SectorTruth;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
+    format!("{:#}\n", Value::Object(drive_data(job, run)))
+}
+
+/// The keys of the summary.
+pub(crate) fn drive_data(job: &DriveJob, run: &DriveRun) -> Map<String, Value> {
     let cells = CellCounts::of(run);
-    let labels: serde_json::Map<String, Value> = sector_counts(run)
+    let labels: Map<String, Value> = sector_counts(run)
         .iter()
         .map(|(label, count)| (label_word(*label).to_string(), json!(count)))
         .collect();
@@ -92,7 +97,10 @@ pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
         "warnings": job.warnings.iter().chain(&run.warnings).collect::<Vec<_>>(),
         "stages": seconds,
     });
-    format!("{all:#}\n")
+    match all {
+        Value::Object(keys) => keys,
+        _ => Map::new(),
+    }
 }
 
 /// Largest error of the vehicle's estimated elevation over all frames, metres.

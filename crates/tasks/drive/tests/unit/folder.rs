@@ -4,7 +4,7 @@ use raypencil_tests::schema::{assert_keys_are_closed, schema_faults};
 
 use super::*;
 use crate::common::{FLAT, LOW_SUN, SHORT, driven, filtered, job};
-use crate::screen::drive_screen;
+use crate::document::drive_document;
 
 /// Times vary from run to run; versions and pictures have their own tests.
 const FILTERS: [(&str, &str); 5] = [
@@ -25,9 +25,9 @@ fn screens_and_pages_tell_facts_warnings_times_and_differences() {
     ];
     for (name, job, renderers) in cases {
         let run = driven(&job, renderers);
-        let page = html(&job, &run, &figures(&job, &run), b"").unwrap();
+        let page = drive_document_with_pictures(&job, &run, &figures(&job, &run), b"").page().unwrap();
         insta::with_settings!({ filters => FILTERS }, {
-            insta::assert_snapshot!(format!("screen_{name}"), drive_screen(&job, &run, Some(Path::new("out"))));
+            insta::assert_snapshot!(format!("screen_{name}"), drive_document(&job, &run).screen());
             insta::assert_snapshot!(format!("page_{name}"), raypencil_explorer::without_explorer(&page));
         });
     }
@@ -59,7 +59,7 @@ fn the_folder_holds_everything_and_the_summary_comes_last() {
     assert!((dem.posts.corner - posts.corner).length() < 1e-9);
     // The animation has one picture per frame.
     let bytes = std::fs::read(folder.path().join("drive.png")).unwrap();
-    let reader = png::Decoder::new(io::Cursor::new(bytes)).read_info().unwrap();
+    let reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
     assert_eq!(reader.info().animation_control().map(|control| control.num_frames), Some(7));
 }
 
@@ -71,7 +71,7 @@ fn the_summary_keeps_to_its_schema() {
     let sunny = format!("{SHORT}\n{LOW_SUN}\nsubtract_unlit = true");
     for (drive, names) in [(SHORT, &["tracer"][..]), (sunny.as_str(), &["scanline", "tracer"])] {
         let job = job(FLAT, drive);
-        let summary = serde_json::from_str(&drive_json(&job, &driven(&job, names))).unwrap();
+        let summary = serde_json::from_str(&drive_document(&job, &driven(&job, names)).json()).unwrap();
         assert_eq!(schema_faults(&schema, &summary), Vec::<String>::new());
     }
 }

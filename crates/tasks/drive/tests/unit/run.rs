@@ -150,7 +150,7 @@ fn a_false_pixel_is_traced_to_the_map() {
             && differences.cells.first.as_deref().unwrap().starts_with("frame 2, cell at ")
     );
     insta::with_settings!({ filters => [(r" +\d+(\.\d+)? (µs|ms|s)\b", " [time]")] }, {
-        insta::assert_snapshot!("screen_with_differences", crate::drive_screen(&job, &run, None));
+        insta::assert_snapshot!("screen_with_differences", crate::drive_document(&job, &run).screen());
     });
     let json: serde_json::Value = serde_json::from_str(&crate::drive_json(&job, &run)).unwrap();
     assert_eq!((&json["passes"], &json["differences"]["pixels"]["differ"]), (&false.into(), &1.into()));
