@@ -9,6 +9,9 @@ use crate::comparison::{Stated, compare_with};
 /// Rays on which mistakes are tried, at most.
 const MAX_TRIED: usize = 2000;
 
+/// Rays that are judged at a time: a mistake that explains nothing is given up after the first of them.
+const CHUNK_RAYS: usize = 64;
+
 /// What explains why a candidate is wrong.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Explanation {
@@ -247,6 +250,53 @@ const PRECISION: Mistake = Mistake {
 };
 
 impl Trial {
+    /// The trial without a mistake; `None` if that changes nothing.
+    fn without(&self, mistake: &Mistake) -> Option<Self> {
+        let mut trial = self.clone();
+        (mistake.undo)(&mut trial);
+        (!trial.has_the_bits_of(self)).then_some(trial)
+    }
+
+    /// Whether every number is the same, NaN included.
+    fn has_the_bits_of(&self, other: &Self) -> bool {
+        let numbers = |a: &Option<Vec<f64>>, b: &Option<Vec<f64>>| match (a, b) {
+            (Some(a), Some(b)) => a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits()),
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        let bits = |v: &DVec3| v.to_array().map(f64::to_bits);
+        let vectors = |a: &Option<Vec<DVec3>>, b: &Option<Vec<DVec3>>| match (a, b) {
+            (Some(a), Some(b)) => a.iter().zip(b).all(|(a, b)| bits(a) == bits(b)),
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        let (a, b) = (&self.stated, &other.stated);
+        self.sides == other.sides
+            && self.precision == other.precision
+            && self.rays == other.rays
+            && a.face == b.face
+            && a.side == b.side
+            && numbers(&a.t, &b.t)
+            && numbers(&a.range, &b.range)
+            && numbers(&a.cos_incidence, &b.cos_incidence)
+            && vectors(&a.point, &b.point)
+            && vectors(&a.normal, &b.normal)
+            && vectors(&a.barycentric, &b.barycentric)
+    }
+
+    /// Number of wrong rays, or `None` as soon as there are more than `most`.
+    fn wrong(&self, exact: &ExactCast<'_>, mesh: &Triangles, most: usize) -> Option<usize> {
+        let mut wrong = 0;
+        let indices: Vec<usize> = (0..self.rays.len()).collect();
+        for chunk in indices.chunks(CHUNK_RAYS) {
+            let rays = &self.rays[chunk[0]..chunk[0] + chunk.len()];
+            let stated = self.stated.some_of(chunk);
+            wrong += compare_with(exact, mesh, rays, self.sides, &stated, self.precision).counts().wrong as usize;
+            if wrong > most {
+                return None;
+            }
+        }
+        Some(wrong)
+    }
+
     /// Whether a ray is one of a sensor with a shortest range, or an answer says that it is.
     fn is_about_sensors(&self) -> bool {
         let says = |distances: &Option<Vec<f64>>| distances.iter().flatten().any(|t| *t == f64::NEG_INFINITY);
@@ -269,43 +319,40 @@ pub(super) fn explain(
     indices.extend((0..rays.len()).step_by(every(rays.len())));
     indices.sort_unstable();
     indices.dedup();
+    // The wrong ones first: a mistake that is not theirs is given up after a few.
+    indices.sort_by_key(|index| wrong.binary_search(index).is_err());
     let trial = Trial {
         rays: indices.iter().map(|&index| rays[index]).collect(),
         sides,
         stated: stated.some_of(&indices),
         precision,
     };
-    let wrong_of = |trial: &Trial| -> usize {
-        let Trial { rays, sides, stated, precision } = trial;
-        compare_with(exact, mesh, rays, *sides, stated, *precision).counts().wrong as usize
-    };
-    let before = wrong_of(&trial);
-    let undone = |trial: &Trial, mistake: &Mistake| {
-        let mut trial = trial.clone();
-        (mistake.undo)(&mut trial);
-        trial
-    };
+    let before = trial.wrong(exact, mesh, usize::MAX)?;
+    // An explanation leaves at most one in a hundred of them wrong.
+    let most = before / 100;
     let explanation = |mistakes: Vec<&'static str>, left: usize| Explanation {
         mistakes,
         agree: indices.len() - left,
         tried: indices.len(),
     };
-    let is_explained = |left: usize| left * 100 <= before;
     let about_sensors: &[Mistake] = if trial.is_about_sensors() { ABOUT_SENSORS } else { &[] };
     let mistakes = || MISTAKES.iter().chain(about_sensors);
-    let singles: Vec<(&Mistake, usize)> =
-        mistakes().chain([&PRECISION]).map(|mistake| (mistake, wrong_of(&undone(&trial, mistake)))).collect();
-    if let Some((mistake, left)) =
-        singles.iter().min_by_key(|(_, left)| *left).filter(|(_, left)| is_explained(*left))
-    {
-        return Some(explanation(vec![mistake.words], *left));
+    let single = |mistake| Some((mistake, trial.without(mistake)?.wrong(exact, mesh, most)?));
+    let singles = mistakes().chain([&PRECISION]).filter_map(single);
+    if let Some((mistake, left)) = singles.min_by_key(|(_, left): &(&Mistake, usize)| *left) {
+        return Some(explanation(vec![mistake.words], left));
     }
+    // Of two, each changes something: else it is one.
     let mut best: Option<(Vec<&'static str>, usize)> = None;
     for (k, first) in mistakes().enumerate() {
-        let once = undone(&trial, first);
+        let Some(once) = trial.without(first) else { continue };
         for second in mistakes().skip(k + 1) {
-            let left = wrong_of(&undone(&once, second));
-            if is_explained(left) && best.as_ref().is_none_or(|(_, kept)| left < *kept) {
+            let most = match best {
+                Some((_, 0)) => return best.map(|(mistakes, left)| explanation(mistakes, left)),
+                Some((_, kept)) => kept - 1,
+                None => most,
+            };
+            if let Some(left) = once.without(second).and_then(|twice| twice.wrong(exact, mesh, most)) {
                 best = Some((vec![first.words, second.words], left));
             }
         }
