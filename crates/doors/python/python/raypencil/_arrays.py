@@ -15,6 +15,9 @@ NO_FACE = 4294967295
 
 Shape = tuple[int, ...]
 
+#: Rays as (n, 9), and their own shape.
+Rays = tuple[NDArray[np.float64], Shape]
+
 
 def reals(name: str, values: ArrayLike) -> NDArray[np.float64]:
     """Numbers of any real type as float64, without a copy where they are so already."""
@@ -38,7 +41,7 @@ def rays(
     t_min: ArrayLike | None = None,
     t_max: ArrayLike | None = None,
     t_blind: ArrayLike | None = None,
-) -> tuple[NDArray[np.float64], Shape]:
+) -> Rays:
     """Rays as (n, 9) with their own shape.
 
     Origins and directions are (..., 3) each, or, without directions, (..., 6), (..., 8) or (..., 9) together. Everything is
@@ -75,7 +78,7 @@ def rays(
     return made.reshape(-1, 9), tuple(int(side) for side in shape)
 
 
-def given_rays(values: Any) -> tuple[NDArray[np.float64], Shape]:
+def given_rays(values: Any) -> Rays:
     """Rays in one argument: an array (..., 6), (..., 8) or (..., 9), or a tuple of the arguments of :func:`rays`."""
     if isinstance(values, tuple):
         if not 2 <= len(values) <= 5:

@@ -15,6 +15,7 @@ from ._mesh import as_mesh
 from ._progress import Progress, stages
 
 Query = Literal["first", "any", "all"]
+Caster = Literal["referee", "tracer"]
 
 #: Unit, and what it is, of each array that has a value for each ray.
 _MEANINGS = {
@@ -258,7 +259,7 @@ def cast(
     t_max: ArrayLike | None = None,
     t_blind: ArrayLike | None = None,
     query: Query | tuple[Query, ...] = "first",
-    with_: Literal["referee", "tracer"] = "referee",
+    with_: Caster = "referee",
     fronts_only: bool = False,
     margins: bool = False,
     progress: Progress = False,
@@ -295,39 +296,23 @@ def cast(
         RaypencilError: shapes that do not fit, and the first ray that is none: a number that is not finite or beyond 1e30, a
             direction of 0, a t_min below 0, a t_max below t_min, a t_blind below 0 or beyond t_max.
     """
-    result = answers(
-        mesh,
-        origins,
-        directions,
-        t_min=t_min,
-        t_max=t_max,
-        t_blind=t_blind,
-        query=query,
-        with_=with_,
-        fronts_only=fronts_only,
-        margins=margins,
-        progress=progress,
-    )
+    rays = _arrays.rays(origins, directions, t_min, t_max, t_blind)
+    result = answered(mesh, rays, query, with_, fronts_only, margins, progress)
     for sentence in result.warnings:
         python_warnings.warn(sentence, RaypencilWarning, stacklevel=2)
     return result
 
 
-def answers(
+def answered(
     mesh: Any,
-    origins: ArrayLike,
-    directions: ArrayLike | None = None,
-    *,
-    t_min: ArrayLike | None = None,
-    t_max: ArrayLike | None = None,
-    t_blind: ArrayLike | None = None,
+    rays: _arrays.Rays,
     query: Query | tuple[Query, ...] = "first",
-    with_: Literal["referee", "tracer"] = "referee",
+    with_: Caster = "referee",
     fronts_only: bool = False,
     margins: bool = False,
     progress: Progress = False,
 ) -> CastResult:
-    """As :func:`cast`, without a warning."""
+    """The answers of :func:`cast` to rays that are formed already, without a warning."""
     if with_ not in ("referee", "tracer"):
         raise RaypencilError(f'with_ is {with_!r}; expected "referee" or "tracer"')
     asked = (query,) if isinstance(query, str) else tuple(query)
@@ -337,10 +322,12 @@ def answers(
     by_tracer = with_ == "tracer"
     if by_tracer and (set(asked) != {"first"} or margins):
         raise RaypencilError('with_="tracer" answers query="first" alone, without margins')
-    rays, shape = _arrays.rays(origins, directions, t_min, t_max, t_blind)
+    flat_rays, shape = rays
     core = as_mesh(mesh)._core
     with stages(progress) as on_stage:
-        flat, warnings = _raypencil.cast(core, rays, by_tracer, fronts_only, "any" in asked, "all" in asked, margins, on_stage)
+        flat, warnings = _raypencil.cast(
+            core, flat_rays, by_tracer, fronts_only, "any" in asked, "all" in asked, margins, on_stage
+        )
     arrays = {
         name: array if name.startswith("all.") else array.reshape(shape + array.shape[1:])
         for name, array in flat.items()

@@ -12,8 +12,9 @@ from typing import Any, Literal, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _arrays
 from ._arrays import NO_FACE
-from ._cast import AllHits, CastResult, answers
+from ._cast import AllHits, Caster, CastResult, answered
 from ._errors import RaypencilError
 from ._mesh import Mesh, as_mesh
 
@@ -42,9 +43,9 @@ class RayMeshIntersector:
             :meth:`intersects_first` and :meth:`intersects_any`; the others are exact in any case.
     """
 
-    def __init__(self, mesh: Any, *, with_: Literal["referee", "tracer"] = "referee") -> None:
+    def __init__(self, mesh: Any, *, with_: Caster = "referee") -> None:
         self.mesh = mesh
-        self._with: Literal["referee", "tracer"] = with_
+        self._with: Caster = with_
         self._kept: tuple[int, Mesh] | None = None
 
     def _mesh(self) -> Mesh:
@@ -64,7 +65,8 @@ class RayMeshIntersector:
             origin, direction = np.zeros((0, 3)), np.zeros((0, 3))
         if origin.ndim != 2 or origin.shape != direction.shape or origin.shape[1] != 3:
             raise RaypencilError(f"rays are {origin.shape} and {direction.shape}; expected (m, 3) twice")
-        return answers(self._mesh(), origin, direction, query=query, with_="referee" if query == "all" else self._with)
+        with_: Caster = "referee" if query == "all" else self._with
+        return answered(self._mesh(), _arrays.rays(origin, direction), query, with_)
 
     @overload
     def intersects_id(
