@@ -87,6 +87,11 @@ def given_rays(values: Any) -> Rays:
     return rays(values, None)
 
 
+def dimensions(shape: Shape) -> tuple[str, ...]:
+    """The names of the dimensions of rays, for xarray."""
+    return {1: ("ray",), 2: ("row", "column")}.get(len(shape)) or tuple(f"axis_{axis}" for axis in range(len(shape)))
+
+
 def faces(name: str, values: ArrayLike) -> NDArray[np.uint32]:
     """Vertex indices: (m, 3), whole numbers of any integer type."""
     array = np.asarray(values)

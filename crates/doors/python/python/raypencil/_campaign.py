@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from functools import partial
 from typing import Any
 
 from . import _raypencil
-from ._cluster import Files, files_below, run_shards
+from ._cluster import Files, Work, made_apart, run_shards
 from ._errors import RaypencilError
-from ._progress import Progress, stages
+from ._progress import Progress
 from ._validate import Outcome
 
 #: Terrains of a shard, if their number is not given: some seconds of work.
@@ -38,9 +37,7 @@ class CampaignResult(Outcome):
 def _shard(arguments: dict[str, Any], count: int, index: int) -> Files:
     """A shard, made by a worker in a folder of its own."""
     core = _raypencil.CampaignCore(**arguments)
-    with tempfile.TemporaryDirectory() as folder:
-        core.shard(index, count, folder)
-        files = files_below(folder)
+    files = made_apart(lambda folder: core.shard(index, count, folder))
     # The records of its terrains are within its result.
     return {name: content for name, content in files.items() if not name.startswith("terrains")}
 
@@ -86,16 +83,7 @@ def campaign(
     arguments["rig"] = None if rig is None else os.path.abspath(os.fspath(rig))
     core = _raypencil.CampaignCore(**arguments)
     folder = os.fspath(output)
-    if shards is None:
-        shards = 1 if client is None else -(-core.terrains // TERRAINS_OF_A_SHARD)
-    if not 1 <= shards <= core.terrains:
-        raise RaypencilError(f"shards is {shards}; expected 1 to {core.terrains}, the terrains")
-    if client is None:
-        with stages(progress) as on_stage:
-            for index in range(shards):
-                core.shard(index, shards, folder, on_stage)
-    else:
-        os.makedirs(folder, exist_ok=True)
-        missing = [index for index in range(shards) if not core.has_result(index, shards, folder)]
-        run_shards(client, "campaign", missing, partial(_shard, arguments, shards), folder, retries, progress)
+    task = partial(_shard, arguments)
+    work = Work("campaign", "terrains", core.terrains, TERRAINS_OF_A_SHARD, core.shard, core.has_result, task)
+    run_shards(work, shards, folder, client, retries, progress)
     return CampaignResult(*core.merge([folder], folder))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _arrays, _raypencil
-from ._errors import RaypencilError, RaypencilWarning, missing_extra
+from ._errors import RaypencilError, RaypencilWarning, optional
 from ._mesh import as_mesh
 from ._progress import Progress, stages
 
@@ -202,12 +202,8 @@ class CastResult:
         Raises:
             ImportError: xarray is not installed: ``pip install raypencil[xarray]``.
         """
-        try:
-            import xarray
-        except ImportError:
-            raise missing_extra("xarray") from None
-        of_rays = {1: ("ray",), 2: ("row", "column")}.get(len(self.shape))
-        dimensions = of_rays or tuple(f"axis_{axis}" for axis in range(len(self.shape)))
+        xarray = optional("xarray", "to_xarray()")
+        dimensions = _arrays.dimensions(self.shape)
         variables = {}
         used: set[str] = set()
         for name, array in self.arrays.items():
@@ -227,10 +223,7 @@ class CastResult:
         Raises:
             ImportError: pandas is not installed: ``pip install raypencil[pandas]``.
         """
-        try:
-            import pandas
-        except ImportError:
-            raise missing_extra("pandas") from None
+        pandas = optional("pandas", "to_pandas()")
         columns = {}
         for name, array in self.arrays.items():
             if name not in _MEANINGS:

@@ -9,7 +9,7 @@ import signal
 import sys
 
 from . import _raypencil
-from ._errors import RaypencilError
+from ._errors import RaypencilError, optional
 
 
 def main() -> int:
@@ -57,10 +57,7 @@ def _on_cluster(words: list[str]) -> int:
     given = _parser().parse_args(words)
     found: Outcome
     try:
-        try:
-            from distributed import Client
-        except ImportError as error:
-            raise RaypencilError("--dask needs Dask: pip install raypencil[dask]") from error
+        Client = optional("distributed", "--dask", "dask").Client
         at = {"scheduler_file": given.dask} if os.path.isfile(given.dask) else {"address": given.dask}
         with Client(**at) as client:
             if given.command == "campaign":

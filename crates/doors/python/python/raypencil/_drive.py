@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _arrays, _raypencil
-from ._errors import RaypencilError, missing_extra
+from ._errors import RaypencilError, optional
 from ._progress import Progress, bar_of
 from ._scene import Pose, as_scene
 
@@ -45,10 +45,7 @@ class ElevationMap:
 
     def to_xarray(self) -> Any:
         """An ``xarray.Dataset`` over ``y`` and ``x``. Raises ImportError without xarray."""
-        try:
-            import xarray
-        except ImportError:
-            raise missing_extra("xarray") from None
+        xarray = optional("xarray", "to_xarray()")
         sources = {"flag_values": [0, 1, 2, 3], "flag_meanings": "unknown proximity extrapolated measured"}
         dataset = xarray.Dataset(
             {

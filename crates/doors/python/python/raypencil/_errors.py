@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+from typing import Any
+
 
 class RaypencilError(ValueError):
     """Something is refused: the message names the file or the argument, what was found and what was expected."""
@@ -19,6 +22,13 @@ class RaypencilWarning(UserWarning):
     """Something looks wrong in what was given. The answers are right for it all the same."""
 
 
-def missing_extra(package: str, extra: str | None = None) -> ImportError:
-    """The error for a package that is optional and not installed."""
-    return ImportError(f"this needs {package}: pip install raypencil[{extra or package}]")
+class MissingExtraError(RaypencilError, ImportError):
+    """A package that is optional is not installed."""
+
+
+def optional(package: str, what: str, extra: str | None = None) -> Any:
+    """A package that ``what`` needs and nothing else does."""
+    try:
+        return import_module(package)
+    except ImportError:
+        raise MissingExtraError(f"{what} needs {package}: pip install raypencil[{extra or package}]") from None

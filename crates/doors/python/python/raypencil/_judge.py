@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _arrays, _raypencil
-from ._errors import RaypencilError, missing_extra
+from ._errors import RaypencilError, optional
 from ._mesh import as_mesh
 from ._progress import Progress, stages
 
@@ -23,7 +23,8 @@ SAME, TIE, ROUNDING, WRONG = 0, 1, 2, 3
 
 _SCALARS = ("t", "range", "side", "cos_incidence")
 _VECTORS = ("point", "normal", "barycentric")
-_KNOWN = ("face", *_SCALARS, *_VECTORS)
+#: Names of arrays that answers to rays may have.
+KNOWN = ("face", *_SCALARS, *_VECTORS, "hit")
 
 #: Wrong rays, and as many others, on which mistakes are tried.
 _TRIED = 1000
@@ -82,12 +83,8 @@ class Judgement:
 
     def to_xarray(self) -> Any:
         """An ``xarray.Dataset`` of ``classes`` and ``moved``. Raises ImportError without xarray."""
-        try:
-            import xarray
-        except ImportError:
-            raise missing_extra("xarray") from None
-        of_rays = {1: ("ray",), 2: ("row", "column")}.get(self.classes.ndim)
-        dimensions = of_rays or tuple(f"axis_{axis}" for axis in range(self.classes.ndim))
+        xarray = optional("xarray", "to_xarray()")
+        dimensions = _arrays.dimensions(self.classes.shape)
         of_classes = {"flag_values": [0, 1, 2, 3], "flag_meanings": "same tie rounding wrong", "units": "1"}
         of_moved = {"units": "unit of the mesh", "long_name": "displacement that excuses the ray"}
         return xarray.Dataset(
@@ -109,9 +106,9 @@ def answers_of(answers: Any) -> Mapping[str, Any]:
 def _stated(answers: Mapping[str, Any], shape: _arrays.Shape, miss: float | None, is_own: bool) -> dict[str, Any]:
     """The arrays as the engine takes them: flat, with misses told."""
     count = int(np.prod(shape, dtype=np.int64))
-    unknown = [name for name in answers if name not in (*_KNOWN, "hit")]
+    unknown = [name for name in answers if name not in KNOWN]
     if unknown and not is_own:
-        raise RaypencilError(f"answers: there is no `{unknown[0]}`; expected some of {', '.join((*_KNOWN, 'hit'))}")
+        raise RaypencilError(f"answers: there is no `{unknown[0]}`; expected some of {', '.join(KNOWN)}")
     if not {"face", "t", "range"} & set(answers):
         raise RaypencilError("answers: expected face, t or range; without one of them it is not said which rays hit")
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _arrays, _raypencil
-from ._errors import RaypencilError, missing_extra
+from ._errors import RaypencilError, optional
 from ._progress import Progress, stages
 from ._scene import as_scene
 
@@ -122,13 +122,14 @@ class RenderResult(Mapping[str, Mapping[str, NDArray[Any]]]):
     def to_xarray(self, sensor: str = "camera") -> Any:
         """An ``xarray.Dataset`` of one sensor's maps, with the coordinates ``row`` and ``column``, units and meanings.
 
+        Args:
+            sensor: ``camera``, ``beam-0``, ...
+
         Raises:
+            RaypencilError: a sensor that is not there.
             ImportError: xarray is not installed: ``pip install raypencil[xarray]``.
         """
-        try:
-            import xarray
-        except ImportError:
-            raise missing_extra("xarray") from None
+        xarray = optional("xarray", "to_xarray()")
         if sensor not in self:
             raise RaypencilError(f"sensor is {sensor!r}; expected one of {', '.join(self)}")
         variables, coordinates = {}, dict[str, Any]()

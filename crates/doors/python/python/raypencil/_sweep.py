@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
 from . import _raypencil, _toml
-from ._cluster import Files, files_below, run_shards, store
-from ._errors import RaypencilError
-from ._progress import Progress, stages
+from ._cluster import Files, Work, made_apart, run_shards, store
+from ._errors import RaypencilError, optional
+from ._progress import Progress
 from ._scene import Scene
 from ._validate import Outcome
 
@@ -39,10 +38,7 @@ class SweepResult(Outcome):
 
     def to_pandas(self) -> Any:
         """The table as a ``pandas.DataFrame``, indexed by run."""
-        try:
-            import pandas
-        except ImportError as error:
-            raise RaypencilError("to_pandas() needs pandas: pip install raypencil[pandas]") from error
+        pandas = optional("pandas", "to_pandas()")
         return pandas.DataFrame(self.columns).set_index("run")
 
     def __repr__(self) -> str:
@@ -58,9 +54,7 @@ class SweepResult(Outcome):
 def _part(arguments: tuple[Any, ...], count: int, index: int) -> Files:
     """A part, made by a worker in a folder of its own."""
     core = _raypencil.SweepCore(*arguments)
-    with tempfile.TemporaryDirectory() as folder:
-        core.part(index, count, folder)
-        files = files_below(folder)
+    files = made_apart(lambda folder: core.part(index, count, folder))
     return {name: content for name, content in files.items() if name != "sweep.json"}
 
 
@@ -140,18 +134,9 @@ def sweep(
         source = os.path.abspath(source)
     arguments = (source, axes, do, names, as_printed)
     core = _raypencil.SweepCore(*arguments)
-    if shards is None:
-        shards = 1 if client is None else -(-core.runs // RUNS_OF_A_SHARD)
-    if not 1 <= shards <= core.runs:
-        raise RaypencilError(f"shards is {shards}; expected 1 to {core.runs}, the runs")
-    if client is None:
-        with stages(progress) as on_stage:
-            for index in range(shards):
-                core.part(index, shards, folder, on_stage)
-    else:
-        os.makedirs(folder, exist_ok=True)
-        missing = [index for index in range(shards) if not core.has_part(index, shards, folder)]
-        run_shards(client, "sweep", missing, partial(_part, arguments, shards), folder, retries, progress)
+    task = partial(_part, arguments)
+    work = Work("sweep", "runs", core.runs, RUNS_OF_A_SHARD, core.part, core.has_part, task)
+    run_shards(work, shards, folder, client, retries, progress)
     return SweepResult(*core.finish([folder], list(charts), folder), folder)
 
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._judge import Arithmetic, Judgement, answers_of, judge
+from ._judge import KNOWN, Arithmetic, Judgement, answers_of, judge
 from ._mesh import Mesh, load_mesh
 from ._packs import CheckResult, check, pack_rays
 
@@ -119,9 +119,8 @@ def assert_answers(
         arrays = dict(answers_of(answers))
         if no_faces:
             arrays.pop("face", None)
-        known = {"face", "t", "range", "side", "point", "normal", "barycentric", "cos_incidence", "hit"}
         if not isinstance(answers, Mapping):
-            arrays = {key: array for key, array in arrays.items() if key in known}
+            arrays = {key: array for key, array in arrays.items() if key in KNOWN}
         judged = judge(pack.mesh, pack.rays, arrays, arithmetic or "f64", miss=miss, name=name, explain=False)
         if judged.passes:
             return judged
