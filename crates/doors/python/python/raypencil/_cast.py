@@ -68,7 +68,14 @@ class AllHits:
     crossing: NDArray[np.int32]
 
     def of(self, ray: int) -> slice:
-        """The entries of one ray: ``all.t[all.of(3)]``."""
+        """The entries of one ray: ``all.t[all.of(3)]``.
+
+        Args:
+            ray: its index in C order, from 0.
+
+        Raises:
+            IndexError: there is no such ray.
+        """
         if not 0 <= ray < len(self.start) - 1:
             raise IndexError(f"ray {ray}; expected 0 to {len(self.start) - 2}")
         return slice(int(self.start[ray]), int(self.start[ray + 1]))

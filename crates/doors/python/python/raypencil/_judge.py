@@ -38,6 +38,7 @@ class Judgement:
             by no more than rounding may), 3 wrong.
         moved: float64, (..., 2): the displacement that excuses a ray, along the vectors ``across``; NaN for the others.
         passes: whether no ray is wrong, and some ray meets something.
+        headline: the verdict in one line.
         why: the mistake that explains the wrong rays, in words; ``None`` if none does.
         summary: the counts and the worst values, as the command's JSON.
     """

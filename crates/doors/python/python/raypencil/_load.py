@@ -17,6 +17,13 @@ def load(source: str | os.PathLike[str], *, progress: Progress = False) -> Mesh 
     A built-in name (``pyramids``, ``facets``), a scene file (``.toml``) and an elevation model (``.tif``) are a
     :class:`Scene`. Everything else is a :class:`Mesh`: ``.glb``, ``.gltf``, ``.stl``, ``.obj``, ``.ply``, or a folder with
     ``vertices.npy`` and ``faces.npy``. For a scene with the default rig on a ``.glb``, write ``Scene("ground.glb")``.
+
+    Args:
+        source: the path or the name.
+        progress: see :func:`cast`.
+
+    Raises:
+        RaypencilError: as :class:`Scene` and :func:`load_mesh`.
     """
     path = os.fspath(source)
     if path in BUILTIN_NAMES or path.lower().endswith(_SCENE_ENDINGS):

@@ -69,7 +69,11 @@ class Mesh:
         return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)])
 
     def save(self, folder: str | os.PathLike[str]) -> None:
-        """Writes ``vertices.npy`` and ``faces.npy`` into a folder, which every command takes for a mesh."""
+        """Writes ``vertices.npy`` and ``faces.npy`` into a folder, which every command takes for a mesh.
+
+        Args:
+            folder: is made if it is not there.
+        """
         os.makedirs(folder, exist_ok=True)
         np.save(os.path.join(folder, "vertices.npy"), self.vertices)
         np.save(os.path.join(folder, "faces.npy"), self.faces)

@@ -59,7 +59,7 @@ def pack_rays(
 
     Args:
         mesh: as in :func:`cast`.
-        rays: (..., 6), (..., 8) or (..., 9), or a tuple of origins, directions, and if wanted t_min, t_max, t_blind.
+        rays: as in :func:`judge`.
         output: the folder.
         fronts_only: rays pass through the backs of faces.
         progress: see :func:`cast`.

@@ -160,7 +160,16 @@ class RenderResult(Mapping[str, Mapping[str, NDArray[Any]]]):
         return dataset
 
     def picture(self, sensor: str = "camera", name: str = "range") -> bytes:
-        """A map of numbers as PNG; of the camera's ``flux`` the sum over all beams. Cells without a hit are grey."""
+        """A map of numbers as PNG. Cells without a hit are grey.
+
+        Args:
+            sensor: ``camera``, ``beam-0``, ...
+            name: of the map. The camera's ``flux`` is the sum over all beams.
+
+        Raises:
+            KeyError: a sensor or a map that is not there.
+            RaypencilError: a map with several numbers in each cell.
+        """
         array = self[sensor][name]
         if name == "flux" and array.ndim == 3:
             array = array.sum(axis=0)

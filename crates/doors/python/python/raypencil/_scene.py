@@ -156,8 +156,13 @@ class Scene:
     def replace(self, settings: Mapping[str, Any] | None = None, /, **tables: Any) -> Scene:
         """The scene with other values: ``scene.replace({"camera.pitch_down_deg": 25, "beam.0.thickness_mm": 4})``.
 
-        The same may be given as ``**{...}``. Keys are those of docs/guide/scene.md, in the file's units. ``beam.thickness_mm``, without a number, is for every
-        beam. Tables may be dictionaries: ``scene.replace(camera={"pitch_down_deg": 25})``.
+        Args:
+            settings: keys of docs/guide/scene.md joined by dots, in the file's units. ``beam.thickness_mm``, without a number,
+                is for every beam.
+            tables: the same as ``**{...}``, or tables as dictionaries: ``scene.replace(camera={"pitch_down_deg": 25})``.
+
+        Raises:
+            RaypencilError: a key that is not there, a value out of range.
         """
         scene = Scene.__new__(Scene)
         more = (*_toml.settings(settings or {}), *_toml.settings(tables))

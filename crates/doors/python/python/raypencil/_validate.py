@@ -154,11 +154,22 @@ def diff(
 ) -> DiffResult:
     """Compares two recordings: files or folders of EXR, NPY, NPZ, Zarr, PFM, PNG or TIFF, of any program.
 
-    A cell passes if ``fail`` (absolute, in the channel's unit), ``fail_relative`` or ``fail_ulp`` allows its difference;
-    ``fail_percent`` of a channel's cells may fail; no cell may differ by more than ``hard_fail``. ``shared_only`` ignores
-    channels that one side has alone. With ``scene`` the referee rules on each cell that differs by more than is allowed, and
-    a channel fails only if a side is wrong; ``arithmetic`` is then that of both. ``output`` is a folder for the report.
-    ``channels`` and ``scale`` are as for :func:`check`; they concern each side that has such a channel.
+    A cell passes if ``fail``, ``fail_relative`` or ``fail_ulp`` allows its difference.
+
+    Args:
+        a, b: the files or folders.
+        channels, scale: as for :func:`check`; they concern each side that has such a channel.
+        fail: an absolute difference that is allowed, in the channel's unit.
+        fail_relative: one relative to the larger of both numbers.
+        fail_ulp: one in units in the last place of the file with the lower precision.
+        fail_percent: percent of a channel's cells that may fail.
+        hard_fail: what no cell may differ by more than, whatever the others allow.
+        shared_only: ignore channels that one side has alone.
+        scene: a :class:`Scene`, or a name or path of one. The referee then rules on each cell that differs by more than is
+            allowed, and a channel fails only if a side is wrong.
+        arithmetic: with ``scene``, the arithmetic in which both were computed.
+        output: a folder for the report.
+        progress: see :func:`cast`.
 
     Raises:
         RaypencilError: files that cannot be read, nothing in common, two sizes of one channel, a threshold below 0.

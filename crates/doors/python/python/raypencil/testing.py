@@ -85,7 +85,11 @@ def hard_rays() -> dict[str, HardRays]:
 
 
 def packs_in(folder: str | os.PathLike[str]) -> dict[str, Path]:
-    """The reference packs in a folder, or the folder itself if it is one, by name."""
+    """The reference packs in a folder, or the folder itself if it is one, by name.
+
+    Args:
+        folder: may be missing; then there are none.
+    """
     marks = ("manifest.json", "raypack.json")
     root = Path(folder)
     places = [root, *sorted(path for path in root.iterdir() if path.is_dir())] if root.is_dir() else []

@@ -102,6 +102,7 @@ class RayMeshIntersector:
             ray_origins, ray_directions: (m, 3).
             return_locations: return locations besides, each once: of several triangles at one point the lowest index.
             multiple_hits: all hits, by ray and then in exact order; otherwise the first of each ray.
+            kwargs: trimesh's other arguments, which change nothing here.
 
         Returns:
             ``index_triangle`` (h,), ``index_ray`` (h,), and if asked ``locations`` (h, 3).
@@ -132,7 +133,11 @@ class RayMeshIntersector:
     def intersects_location(
         self, ray_origins: ArrayLike, ray_directions: ArrayLike, **kwargs: Any
     ) -> tuple[_Points, _Index, _Index]:
-        """The places where rays (m, 3) hit the mesh, each once.
+        """The places where rays hit the mesh, each once.
+
+        Args:
+            ray_origins, ray_directions: (m, 3).
+            kwargs: ``multiple_hits`` as for :meth:`intersects_id`; trimesh's other arguments change nothing here.
 
         Returns:
             ``locations`` (h, 3), ``index_ray`` (h,), ``index_tri`` (h,).
@@ -144,19 +149,35 @@ class RayMeshIntersector:
         return locations, index_ray, index_tri
 
     def intersects_first(self, ray_origins: ArrayLike, ray_directions: ArrayLike, **kwargs: Any) -> _Index:
-        """(m,): the first triangle that each ray hits, -1 if none."""
+        """(m,): the first triangle that each ray hits, -1 if none.
+
+        Args:
+            ray_origins, ray_directions: (m, 3).
+            kwargs: trimesh's other arguments, which change nothing here.
+        """
         face = self._cast(ray_origins, ray_directions, "first").face
         return np.where(face == NO_FACE, -1, face.astype(np.int64))
 
     def intersects_any(self, ray_origins: ArrayLike, ray_directions: ArrayLike, **kwargs: Any) -> NDArray[np.bool_]:
-        """(m,): whether each ray hits anything."""
+        """(m,): whether each ray hits anything.
+
+        Args:
+            ray_origins, ray_directions: (m, 3).
+            kwargs: trimesh's other arguments, which change nothing here.
+        """
         return self._cast(ray_origins, ray_directions, "first").hit
 
     def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
-        """(n,): whether points (n, 3) are inside of a closed mesh: whether it winds around them.
+        """(n,): whether points are inside of a closed mesh: whether it winds around them.
 
         It is counted exactly along one ray for each point, also where the ray meets edges and vertices. Points on the surface
         may be either.
+
+        Args:
+            points: (n, 3).
+
+        Raises:
+            RaypencilError: points of another shape.
         """
         places = np.asanyarray(points, dtype=np.float64)
         if places.size == 0:
