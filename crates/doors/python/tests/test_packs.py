@@ -28,12 +28,12 @@ def test_a_pack_is_the_commands(command: Command, tmp_path: Path) -> None:
     assert sorted(theirs) == sorted(ours) and len(ours) > 50
     differing = [name for name in theirs if theirs[name] != ours[name]]
     assert differing == []
-    pack(Scene(SMALL, name="small"), tmp_path / "plain", bench=False)
+    pack(Scene(SMALL, name="small"), tmp_path / "plain", no_bench=True)
     assert len(files(tmp_path / "plain")) < len(ours)
 
 
 def test_a_pack_has_a_label_and_is_told_apart(tmp_path: Path) -> None:
-    pack(Scene(SMALL, name="small"), tmp_path / "mine", bench=False, version="2.1", licence="CC-BY-4.0")
+    pack(Scene(SMALL, name="small"), tmp_path / "mine", no_bench=True, pack_version="2.1", licence="CC-BY-4.0")
     manifest = json.loads((tmp_path / "mine/manifest.json").read_text())
     assert (manifest["version"], manifest["licence"]) == ("2.1", "CC-BY-4.0")
     of_mine = check(tmp_path / "mine", tmp_path / "mine").summary["pack"]
@@ -42,10 +42,10 @@ def test_a_pack_has_a_label_and_is_told_apart(tmp_path: Path) -> None:
     assert every.summary["pack"]["published"]
     asked = [result.summary["verified"] for result in (sampled, every)]
     assert asked[0]["answers"] < asked[0]["of"] == asked[1]["of"] == asked[1]["answers"] == 2866
-    labels: list[tuple[dict[str, Any], str]] = [({"version": "one"}, "version"), ({"licence": "a\nb"}, "licence")]
+    labels: list[tuple[dict[str, Any], str]] = [({"pack_version": "one"}, "version"), ({"licence": "a\nb"}, "licence")]
     for label, words in labels:
         with pytest.raises(RaypencilError, match=words):
-            pack(Scene(SMALL), tmp_path / "none", bench=False, **label)
+            pack(Scene(SMALL), tmp_path / "none", no_bench=True, **label)
     assert not (tmp_path / "none").exists()
 
 

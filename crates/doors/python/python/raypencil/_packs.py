@@ -16,18 +16,20 @@ from ._errors import RaypencilError
 from ._judge import Arithmetic, answers_of
 from ._mesh import as_mesh
 from ._progress import Progress, stages
+from ._renamed import Renamed, renamed
 from ._scene import as_scene
 from ._validate import Outcome
 
 PathLike = str | os.PathLike[str]
 
 
+@renamed(Renamed("version", "pack_version"), Renamed("bench", "no_bench", is_opposite=True))
 def pack(
     scene: Any,
     output: PathLike,
     *,
-    bench: bool = True,
-    version: str | None = None,
+    no_bench: bool = False,
+    pack_version: str | None = None,
     licence: str | None = None,
     progress: Progress = False,
 ) -> Path:
@@ -36,8 +38,8 @@ def pack(
     Args:
         scene: a :class:`Scene`, or a name or path of one.
         output: the folder.
-        bench: add small sensors whose rays lie at the limits of the contract.
-        version: of the pack itself, such as ``"1.0.0"``: for packs that are passed on.
+        no_bench: leave the scene as it is. Without it small sensors are added whose rays lie at the limits of the contract.
+        pack_version: of the pack itself, such as ``"1.0.0"``: for packs that are passed on.
         licence: of the pack itself, an SPDX expression such as ``"CC0-1.0"``.
         progress: see :func:`cast`.
 
@@ -48,7 +50,7 @@ def pack(
         RaypencilError: a version or a licence that is none.
     """
     with stages(progress) as on_stage:
-        _raypencil.pack_scene(as_scene(scene)._core, os.fspath(output), bench, version, licence, on_stage)
+        _raypencil.pack_scene(as_scene(scene)._core, os.fspath(output), not no_bench, pack_version, licence, on_stage)
     return Path(output)
 
 
