@@ -71,7 +71,7 @@ def wrong_arguments(name: str, item: Any, text: str) -> list[str]:
     if isinstance(item, property) or (isinstance(item, type) and item.__name__ not in MADE_BY_PEOPLE):
         has: list[str] = []
     else:
-        has = parameters(item.__init__ if isinstance(item, type) else getattr(item, "__func__", item))
+        has = parameters(vars(item)["__init__"] if isinstance(item, type) else getattr(item, "__func__", item))
     return [] if (told or []) == has else [f"{name} has the arguments {has}, and documents {told or []}"]
 
 

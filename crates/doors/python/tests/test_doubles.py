@@ -32,7 +32,7 @@ def functions(text: str) -> Iterator[Function]:
     """All functions and methods; of those with overloads the last one, which does the work."""
     module = ast.parse(text)
     classes = [node for node in module.body if isinstance(node, ast.ClassDef)]
-    for node in [node for of in (module, *classes) for node in of.body]:
+    for node in [*module.body, *(node for of in classes for node in of.body)]:
         if isinstance(node, ast.FunctionDef) and [ast.unparse(by) for by in node.decorator_list] != ["overload"]:
             arguments = {argument.arg for argument in [*node.args.args, *node.args.kwonlyargs]}
             body = node.body[1:] if ast.get_docstring(node) is not None else node.body
