@@ -66,10 +66,9 @@ def of_nodes(nodes: list[ast.stmt], of: str = "") -> Iterator[tuple[str, str]]:
             case ast.FunctionDef(name=name, decorator_list=[ast.Name(id="property")]):
                 yield f"{of}{name}", "attribute"
             case ast.FunctionDef(name=name, decorator_list=[]):
-                # Without types, which would have to be imported.
-                bare = ast.FunctionDef(name, without_types(node.args), [ast.Pass()], [], lineno=1, col_offset=0)
+                # Types would have to be imported.
                 scope: dict[str, Any] = {}
-                exec(compile(ast.Module([ast.fix_missing_locations(bare)], []), str(STUB), "exec"), scope)
+                exec(compile(ast.Module([without_types(node)], []), str(STUB), "exec"), scope)
                 yield f"{of}{name}", line(inspect.signature(scope[name]))
             case ast.AnnAssign(target=ast.Name(id=name)):
                 yield f"{of}{name}", "attribute"
@@ -81,11 +80,12 @@ def of_nodes(nodes: list[ast.stmt], of: str = "") -> Iterator[tuple[str, str]]:
                 raise AssertionError(f"{STUB.name}, line {node.lineno}: {ast.unparse(node)}")
 
 
-def without_types(arguments: ast.arguments) -> ast.arguments:
-    for argument in [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs, arguments.vararg, arguments.kwarg]:
-        if argument is not None:
-            argument.annotation = None
-    return arguments
+def without_types(function: ast.FunctionDef) -> ast.FunctionDef:
+    function.returns = None
+    for node in ast.walk(function.args):
+        if isinstance(node, ast.arg):
+            node.annotation = None
+    return function
 
 
 def differences(module: Items, stub: Items) -> list[str]:
