@@ -15,7 +15,10 @@ from raypencil import _raypencil
 
 STUB = Path(_raypencil.__file__).with_name("_raypencil.pyi")
 
-#: What each item is: `attribute`, or a line with the parameters of a function.
+#: Py_TPFLAGS_BASETYPE.
+CAN_HAVE_SUBCLASSES = 1 << 10
+
+#: What each item is: `attribute`, `class`, `final class`, or a line with the parameters of a function.
 Items = dict[str, str]
 
 
@@ -34,7 +37,7 @@ def of_module(module: ModuleType) -> Iterator[tuple[str, str]]:
     every_module_has = vars(ModuleType("any")).keys() | {"__file__", "__all__"}
     for name, item in vars(module).items():
         if isinstance(item, type):
-            yield name, "class"
+            yield name, "class" if item.__flags__ & CAN_HAVE_SUBCLASSES else "final class"
             yield from ((f"{name}.{of}", what) for of, what in of_class(item))
         elif callable(item):
             yield name, line(inspect.signature(item))
@@ -60,8 +63,8 @@ def of_stub(text: str) -> Iterator[tuple[str, str]]:
 def of_nodes(nodes: list[ast.stmt], of: str = "") -> Iterator[tuple[str, str]]:
     for node in nodes:
         match node:
-            case ast.ClassDef(name=name, body=body):
-                yield name, "class"
+            case ast.ClassDef(name=name, body=body, decorator_list=decorators):
+                yield name, " ".join([*map(ast.unparse, decorators), "class"])
                 yield from of_nodes(body, f"{name}.")
             case ast.FunctionDef(name=name, decorator_list=[ast.Name(id="property")]):
                 yield f"{of}{name}", "attribute"
@@ -101,7 +104,7 @@ def test_the_stub_says_what_the_module_has() -> None:
     module, stub = dict(of_module(_raypencil)), dict(of_stub(STUB.read_text(encoding="utf-8")))
     assert differences(module, stub) == []
     # All kinds are there, so that none is skipped.
-    assert module["__version__"] == "attribute" and module["MeshCore"] == "class"
+    assert module["__version__"] == "attribute" and module["MeshCore"] == "final class"
     assert module["MeshCore.vertices"] == "attribute" and module["MeshCore.__new__"] == "(vertices, faces)"
     assert module["cast"].startswith("(mesh, rays, ") and "ValidationCore.__new__" not in module
 
@@ -119,7 +122,8 @@ def test_the_stub_says_what_the_module_has() -> None:
         ("class ValidationCore:\n", "class ValidationCore:\n    def __new__(cls) -> ValidationCore: ...\n",
          ["ValidationCore.__new__: the module has nothing, the stub says ()"]),
         ("    def close(self) -> None: ...\n", "", ["DriveCore.close: the module has (), the stub says nothing"]),
-        ("class SweepCore", "class Sweep", ["Sweep: the module has nothing, the stub says class"]),
+        ("class SweepCore", "class Sweep", ["Sweep: the module has nothing, the stub says final class"]),
+        ("@final\nclass DriveCore", "class DriveCore", ["DriveCore: the module has final class, the stub says class"]),
         ("__version__: str", "", ["__version__: the module has attribute, the stub says nothing"]),
     ],
 )  # fmt: skip

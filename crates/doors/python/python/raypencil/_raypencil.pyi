@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from os import PathLike
-from typing import Any
+from typing import Any, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ _Path = str | PathLike[str]
 _Pairs = Sequence[tuple[str, str]]
 _Arrays = dict[str, NDArray[Any]]
 
+@final
 class MeshCore:
     def __new__(cls, vertices: NDArray[np.float64], faces: NDArray[np.uint32]) -> MeshCore: ...
     @property
@@ -25,6 +26,7 @@ class MeshCore:
     @property
     def digests(self) -> list[str]: ...
 
+@final
 class SceneCore:
     def __new__(
         cls, source: str, is_text: bool, name: str, settings: _Pairs, on_stage: _OnStage = None
@@ -56,6 +58,7 @@ class SceneCore:
 
 def parse_axis(text: str) -> tuple[str, list[str]]: ...
 
+@final
 class CampaignCore:
     def __new__(
         cls,
@@ -71,6 +74,7 @@ class CampaignCore:
     def has_result(self, index: int, count: int, folder: _Path) -> bool: ...
     def merge(self, folders: Sequence[_Path], output: _Path | None = None) -> tuple[bool, str, str]: ...
 
+@final
 class SweepCore:
     def __new__(
         cls,
@@ -88,6 +92,7 @@ class SweepCore:
         self, folders: Sequence[_Path], charts: Sequence[str], output: _Path
     ) -> tuple[bool, str, str, dict[str, list[Any]]]: ...
 
+@final
 class ValidationCore:
     @property
     def passes(self) -> bool: ...
@@ -98,6 +103,7 @@ class ValidationCore:
     def report(self) -> str: ...
     def maps(self, index: int) -> dict[str, _Arrays]: ...
 
+@final
 class DriveCore:
     def __new__(
         cls,
