@@ -63,9 +63,9 @@ fn answer(question: &Question, watch: &Watch) -> Result<Answer, Failure> {
     }
     let document = checked.document();
     let (kind, arrays, shape) = match &checked {
-        CheckedPack::Sensors { .. } => ("scene", Arrays::default(), Vec::new()),
+        CheckedPack::Sensors { .. } => ("sensors", Arrays::default(), Vec::new()),
         CheckedPack::Rays(of) => ("rays", verdict_arrays(&of.comparison), of.rays.shape.clone()),
-        CheckedPack::Triangles(_) => ("input", Arrays::default(), Vec::new()),
+        CheckedPack::Triangles(_) => ("triangles", Arrays::default(), Vec::new()),
     };
     Ok(Answer {
         kind,

@@ -63,7 +63,7 @@ def test_renders_are_right_on_a_pack() -> None:
     scene = Scene(HARD / "scene.toml")
     for renderer in ("tracer", "referee"):
         result = check(HARD, render(scene, renderer))
-        assert result and result.kind == "scene" and result.why is None
+        assert result and result.kind == "sensors" and result.why is None
     assert result.classes is None and "2,866 rays agree" in result.text
 
 
@@ -121,7 +121,7 @@ def test_answers_to_a_pack_of_rays(cube: Mesh, tmp_path: Path) -> None:
 def test_triangles_of_a_loader() -> None:
     folder = DATA / "packs/input"
     result = check(folder, {"triangles": np.zeros((3, 9))})
-    assert not result and result.kind == "input"
+    assert not result and result.kind == "triangles"
     with pytest.raises(RaypencilError, match="is an input pack"):
         check(folder, {"triangles": np.zeros((3, 9))}, "f32")
 

@@ -99,11 +99,14 @@ impl CastPage<'_> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn document(&self) -> Document {
-        let (explorer, mut notes) = self.explorer_with_notes();
-        notes.push(NUMBERS.into());
+        let (explorer, notes) = self.explorer_with_notes();
         let (outcome, headline) = match &self.compared {
             Some(ComparedHits { name, comparison, .. }) => {
-                let outcome = if comparison.passes() { Outcome::Agrees } else { Outcome::Fails };
+                let outcome = match (comparison.passes(), comparison.counts().wrong) {
+                    (true, _) => Outcome::Agrees,
+                    (false, 0) => Outcome::Open,
+                    (false, _) => Outcome::Fails,
+                };
                 (outcome, format!("{name}: {}", comparison_headline(comparison)))
             }
             None => (Outcome::Told, self.title.to_string()),
@@ -131,7 +134,12 @@ impl CastPage<'_> {
             ],
             suites: Vec::new(),
             format: 1,
-            verdict: if outcome == Outcome::Fails { "defects" } else { "agrees" },
+            verdict: match outcome {
+                Outcome::Agrees => "agrees",
+                Outcome::Fails => "defects",
+                Outcome::Open => "nothing_hit",
+                Outcome::Told => "told",
+            },
             data: serde_json::Map::new(),
             explorer,
         }
@@ -158,7 +166,8 @@ impl CastPage<'_> {
         match self.explorer() {
             None => (String::new(), vec![TOO_MANY.into()]),
             Some((html, layout, left_out)) => {
-                (html, [layout, left_out].into_iter().filter(|words| !words.is_empty()).collect())
+                let words = [layout, left_out, NUMBERS.to_string()];
+                (html, words.into_iter().filter(|words| !words.is_empty()).collect())
             }
         }
     }

@@ -110,7 +110,7 @@ pub use output::screen::{one_screen, whole_screen};
 pub use output::summary::summary_json;
 pub use probe::{NoSuchRay, Probe, ProbedAnswer, ProbedCandidate, ProbedReturn, probe};
 pub use radiance::{RadianceComparison, compare_radiance};
-pub use ray_set_packs::{CheckedRaySet, PackedRaySet, check_packed_ray_sets, write_pack_with_ray_sets};
+pub use ray_set_packs::{CheckedRaySet, PackedRaySet, write_pack_with_ray_sets};
 pub use ray_sets::{RaySetResult, write_ray_sets};
 pub use rendered::Rendered;
 pub use renderers::{Contender, RENDERER_NAMES, attribute, contender, typed_contenders};

@@ -93,7 +93,7 @@ pub fn write_pack_with_ray_sets(
 /// # Errors
 /// A pack that is not complete; a set whose files are not those that it lists; an array of the candidate that cannot be
 /// read.
-pub fn check_packed_ray_sets(
+pub(crate) fn check_packed_ray_sets(
     pack: &Path,
     candidate: &Path,
     precision: Precision,
@@ -113,8 +113,12 @@ pub fn check_packed_ray_sets(
         let checked = given
             .is_dir()
             .then(|| check_ray_pack(&pack.join(path_of(name)), &given, precision, conventions, progress));
-        let rays = ray_pack_len(&pack.join(path_of(name)))?;
-        Ok(CheckedRaySet { name: name.to_string(), rays, checked: checked.transpose()? })
+        let checked = checked.transpose()?;
+        let rays = match &checked {
+            Some(checked) => checked.rays.rays.len() as u64,
+            None => ray_pack_len(&pack.join(path_of(name)))?,
+        };
+        Ok(CheckedRaySet { name: name.to_string(), rays, checked })
     };
     names.map(check).collect()
 }

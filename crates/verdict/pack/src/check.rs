@@ -96,18 +96,6 @@ pub struct Verified {
 }
 
 impl Checked {
-    /// Whether the candidate agrees on a pack in which something is hit, and on its sets of rays.
-    pub fn passes(&self) -> bool {
-        let sets_pass = self.ray_sets.iter().all(|set| set.passes());
-        self.check.passes() && self.hits_anything() && sets_pass
-    }
-
-    /// Whether any ray of the pack hits. On a pack without hits a program that answers nothing is right.
-    pub fn hits_anything(&self) -> bool {
-        let ranges = self.exact.maps.iter().filter_map(|map| map.range.as_ref());
-        ranges.flat_map(|map| map.cells()).any(|range| range.get().is_some())
-    }
-
     /// The diagnosis as one sentence, if there is one.
     pub fn why(&self) -> Option<String> {
         self.diagnosis.as_ref().map(Diagnosis::sentence)

@@ -78,7 +78,7 @@ class CheckResult(Outcome):
     """Somebody's answers against a pack.
 
     Attributes:
-        kind: ``"scene"``, ``"rays"`` or ``"input"``.
+        kind: ``"sensors"``, ``"rays"`` or ``"triangles"``.
         why: the mistake that explains the wrong rays, in words; ``None`` if none does, or if nothing is wrong.
         classes: of a pack of rays, uint8 of the rays' shape: 0 the same, 1 at a tie, 2 rounding, 3 wrong; else ``None``.
         moved: of a pack of rays, (..., 2): as :attr:`Judgement.moved`; else ``None``.

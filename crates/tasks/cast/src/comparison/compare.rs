@@ -69,10 +69,11 @@ pub fn compare_with(
     let judged: Vec<Judged> = rays.par_iter().enumerate().map(|(index, ray)| judge.ray(index, ray)).collect();
     let given = |value: &CastValue| stated.part(*value, 0).is_some() || rays.is_empty();
     let tally = |value: CastValue| {
-        let mut tally = ValueTally { value, compared: 0, worst: None };
+        let mut tally = ValueTally { value, compared: 0, wrong: 0, worst: None };
         for (index, judged) in judged.iter().enumerate() {
             let Some(ratio) = judged.ratios[value as usize] else { continue };
             tally.compared += 1;
+            tally.wrong += u64::from(ratio > 1.0);
             if tally.worst.is_none_or(|(worst, _)| ratio > worst) {
                 tally.worst = Some((ratio, index));
             }

@@ -94,6 +94,8 @@ pub struct ValueTally {
     pub value: CastValue,
     /// Number of rays with the same face on which it was compared.
     pub compared: u64,
+    /// Number of these rays on which it is beyond its bound.
+    pub wrong: u64,
     /// The largest error as a part of its bound, and the index of its ray; `None` if nothing was compared.
     pub worst: Option<(f64, usize)>,
 }

@@ -289,7 +289,8 @@ impl Trial {
         for chunk in indices.chunks(CHUNK_RAYS) {
             let rays = &self.rays[chunk[0]..chunk[0] + chunk.len()];
             let stated = self.stated.some_of(chunk);
-            wrong += compare_with(exact, mesh, rays, self.sides, &stated, self.precision).counts().wrong as usize;
+            wrong +=
+                compare_with(exact, mesh, rays, self.sides, &stated, self.precision).counts().wrong as usize;
             if wrong > most {
                 return None;
             }
@@ -342,7 +343,7 @@ pub(super) fn explain(
     if let Some((mistake, left)) = singles.min_by_key(|(_, left): &(&Mistake, usize)| *left) {
         return Some(explanation(vec![mistake.words], left));
     }
-    // Of two, each changes something: else it is one.
+    // Both of a pair change something: else the pair is a single mistake.
     let mut best: Option<(Vec<&'static str>, usize)> = None;
     for (k, first) in mistakes().enumerate() {
         let Some(once) = trial.without(first) else { continue };

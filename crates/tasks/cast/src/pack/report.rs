@@ -7,8 +7,9 @@ use raypencil_scene::{FaceId, Reading};
 use serde_json::{Map, Value, json};
 
 use super::check::RayPackChecked;
-use crate::comparison::{CastValue, Wrong, wrong_text};
+use crate::comparison::{Wrong, wrong_text};
 use crate::page::{CastPage, ComparedHits};
+use crate::text::counts_text;
 
 /// Wrong rays that are listed, at most.
 const MAX_LISTED: usize = 12;
@@ -58,11 +59,10 @@ impl RayPackChecked {
             arithmetic: Some(self.comparison.precision),
             totals: bundle.items.clone(),
             worst: bundle.listed.iter().map(|wrong| wrong.line.clone()).collect(),
-            hits_anything: self.comparison.met > 0,
             coarseness: None,
             headline: None,
             why: self.why.clone(),
-            notes: Vec::new(),
+            notes: vec![format!("{}.", counts_text(&self.answers))],
             facts: Vec::new(),
             of_form: Map::new(),
             pictures: String::new(),
@@ -79,12 +79,9 @@ impl RayPackChecked {
         by_class[Class::Tie as usize] = counts.ties;
         by_class[Class::Rounding as usize] = counts.rounding;
         by_class[Class::Defect as usize] = counts.wrong;
-        let wrong_in = |value: CastValue| {
-            let is_of = |wrong: &Wrong| matches!(wrong, Wrong::Value { value: of, .. } if *of == value);
-            self.comparison.wrong().filter(|(_, wrong)| is_of(wrong)).count() as u64
-        };
         // A ray with a wrong value has the right hit.
-        let wrong_values: u64 = CastValue::ALL.into_iter().map(wrong_in).sum();
+        let is_of_values = |(_, wrong): &(usize, Wrong)| matches!(wrong, Wrong::Value { .. });
+        let wrong_values = self.comparison.wrong().filter(is_of_values).count() as u64;
         let mut of_hits = by_class;
         of_hits[Class::Defect as usize] -= wrong_values;
         of_hits[Class::Agree as usize] += wrong_values;
@@ -101,10 +98,9 @@ impl RayPackChecked {
             worst_ratio: None,
         };
         let values = self.comparison.values.iter().map(|tally| {
-            let wrong = wrong_in(tally.value);
             let mut by_class = [0; Class::COUNT];
-            by_class[Class::Defect as usize] = wrong;
-            by_class[Class::Agree as usize] = tally.compared.saturating_sub(wrong);
+            by_class[Class::Defect as usize] = tally.wrong;
+            by_class[Class::Agree as usize] = tally.compared - tally.wrong;
             let worst_ratio = tally.worst.map(|(value, index)| WorstOf {
                 value,
                 place: format!("{name} {index}"),
@@ -124,6 +120,8 @@ impl RayPackChecked {
         let listed = self.comparison.wrong().take(MAX_LISTED);
         BundleFindings {
             name: name.into(),
+            hits_anything: self.comparison.met > 0,
+            must_hit: true,
             by_class,
             not_compared: 0,
             ruled: counts.rounding + counts.wrong,
@@ -173,7 +171,7 @@ impl RayPackChecked {
     }
 }
 
-/// What is stated, and what is exact if that is one thing.
+/// The stated answer, and the exact one where there is one.
 fn said_and_true(wrong: &Wrong) -> (String, Option<String>) {
     let face = |read: &Reading<FaceId>| match read {
         Reading::Hit(face) => format!("face {}", face.0),

@@ -134,6 +134,10 @@ pub struct WrongRay {
 pub struct BundleFindings {
     /// Its name: camera, beam-0, rays/NAME, triangles.
     pub name: String,
+    /// Whether any of its rays meets something.
+    pub hits_anything: bool,
+    /// Whether it proves nothing by itself where none does: a set of rays, but no single sensor.
+    pub must_hit: bool,
     /// Rays of which anything was compared, by the worst class of their items.
     pub by_class: ClassCounts,
     /// Rays of which nothing was compared.
@@ -154,6 +158,8 @@ impl BundleFindings {
         let by_class = [0; Class::COUNT];
         Self {
             name,
+            hits_anything: false,
+            must_hit: true,
             by_class,
             not_compared: rays,
             ruled: 0,
@@ -168,7 +174,8 @@ impl BundleFindings {
         wrong(&self.by_class) == 0
     }
 
-    fn compared(&self) -> u64 {
+    /// Rays of which anything was compared.
+    pub fn compared(&self) -> u64 {
         self.by_class.iter().sum()
     }
 
@@ -208,7 +215,7 @@ pub struct CheckFindings {
     pub form: PackForm,
     /// Name of the pack.
     pub pack: String,
-    /// What is said of it after its name; empty or with a blank before it.
+    /// Words after the pack's name, with a blank before them; mostly none.
     pub pack_remark: &'static str,
     /// SHA-256 of the file of the pack that lists the others.
     pub pack_sha256: String,
@@ -226,8 +233,6 @@ pub struct CheckFindings {
     pub totals: Vec<ItemFindings>,
     /// The worst rays of all, for a screen.
     pub worst: Vec<DefectLine>,
-    /// Whether any ray of the pack hits. On a pack without hits a program that answers nothing is right.
-    pub hits_anything: bool,
     /// The coarsest type in which the candidate is stored, if it is coarser than single precision.
     pub coarseness: Option<String>,
     /// The verdict in one sentence, where it is not told by counts of rays.
@@ -261,10 +266,17 @@ impl CheckFindings {
         std::array::from_fn(|k| self.bundles.iter().map(|bundle| bundle.by_class[k]).sum())
     }
 
+    /// Whether any ray hits, and any of each set that is given. Where nothing is hit, a program that answers nothing is right.
+    fn hits_anything(&self) -> bool {
+        let is_idle =
+            |bundle: &BundleFindings| bundle.must_hit && bundle.compared() > 0 && !bundle.hits_anything;
+        self.bundles.iter().any(|bundle| bundle.hits_anything) && !self.bundles.iter().any(is_idle)
+    }
+
     /// The outcome in one word.
     pub fn verdict(&self) -> &'static str {
         let by_class = self.by_class();
-        match (by_class.iter().sum::<u64>(), wrong(&by_class), self.hits_anything) {
+        match (by_class.iter().sum::<u64>(), wrong(&by_class), self.hits_anything()) {
             (0, ..) => "nothing_compared",
             (_, 1.., _) => "defects",
             (_, 0, true) => "agrees",
@@ -303,7 +315,7 @@ impl CheckFindings {
                 format!("{} of {rays} rays {are} wrong{undecided}.", of(Class::Defect))
             }
             "nothing_hit" => format!(
-                "No ray of this pack hits anything: that the candidate says so on {rays} rays proves little."
+                "No ray of this pack, or of one of its sets, hits anything: that the candidate agrees on {rays} rays proves little."
             ),
             _ => "Nothing was compared.".into(),
         }
@@ -335,12 +347,14 @@ impl CheckFindings {
             ("why".to_string(), self.why.as_deref().into()),
             ("bundles".to_string(), self.bundles.iter().map(BundleFindings::to_json).collect()),
         ]);
-        let absent = ["scene", "verified", "diagnosis"].map(|key| (key.to_string(), Value::Null));
+        let absent =
+            ["scene", "verified", "diagnosis", "triangles"].map(|key| (key.to_string(), Value::Null));
         data.extend(absent);
         data.extend([("blind".to_string(), false.into()), ("unknown_channels".to_string(), json!([]))]);
         data.extend(self.of_form.clone());
-        let mut suite = suite(&self.pack, &self.candidate, &self.bundles, self.why.as_deref());
-        if !self.hits_anything {
+        let noun = if self.form == PackForm::Triangles { "faces" } else { "rays" };
+        let mut suite = suite(&self.pack, &self.candidate, &self.bundles, self.why.as_deref(), noun);
+        if !self.hits_anything() {
             suite.push(JunitCase::failed(
                 "something is hit",
                 "nothing_hit",
@@ -348,7 +362,7 @@ impl CheckFindings {
             ));
         }
         let mut remarks: Vec<String> = self.why.iter().map(|why| format!("Why: {why}.")).collect();
-        // Of one bundle alone it is the same reason.
+        // A single bundle has the same reason.
         if self.bundles.len() > 1 {
             let whys = self.bundles.iter().filter_map(|bundle| Some((&bundle.name, bundle.why.as_ref()?)));
             remarks.extend(whys.map(|(name, why)| format!("Why in {name}: {why}.")));
@@ -423,7 +437,12 @@ fn grid(items: &[ItemFindings]) -> Grid {
         let row = [
             item.name.clone(),
             item.storage.clone().unwrap_or_default(),
-            item.not_given.map_or_else(|| count(item.compared()), |_| "not given".into()),
+            match item.not_given {
+                None => count(item.compared()),
+                Some("not given") => "not given".into(),
+                // The notes below the table say it in full.
+                Some(_) => "type too small".into(),
+            },
             of(Class::Agree),
             of(Class::Tie),
             of(Class::Rounding),
@@ -450,12 +469,18 @@ pub(crate) fn suite(
     candidate: &str,
     bundles: &[BundleFindings],
     why: Option<&str>,
+    noun: &str,
 ) -> JunitSuite {
     let mut suite = JunitSuite::new(format!("{pack}: {candidate}"));
     for bundle in bundles {
         let class = format!("{pack}.{candidate}.{}", bundle.name);
+        if bundle.items.is_empty() {
+            suite.push(JunitCase::skipped("first hit", "not given").with_class(class.as_str()));
+        }
+        // A set of rays has a reason of its own, or none.
+        let why = if bundle.must_hit { bundle.why.as_deref() } else { why };
         for item in &bundle.items {
-            suite.push(case(bundle, item, why).with_class(class.as_str()));
+            suite.push(case(bundle, item, why, noun).with_class(class.as_str()));
         }
     }
     // Without this, a report of skipped cases alone would look like a pass.
@@ -466,17 +491,17 @@ pub(crate) fn suite(
 }
 
 /// The outcome of one item of one bundle.
-fn case(bundle: &BundleFindings, item: &ItemFindings, why: Option<&str>) -> JunitCase {
+fn case(bundle: &BundleFindings, item: &ItemFindings, why: Option<&str>, noun: &str) -> JunitCase {
     let name = item.name.as_str();
     if item.wrong() == 0 {
         return match item.not_given {
             Some(why) => JunitCase::skipped(name, why),
-            None if item.compared() == 0 => JunitCase::skipped(name, "no ray has it"),
+            None if item.compared() == 0 => JunitCase::skipped(name, format!("none of the {noun} has it")),
             None => JunitCase::passed(name),
         };
     }
     let [wrong, rays] = [item.wrong(), item.compared()].map(count);
-    let message = format!("{}: {name} is wrong on {wrong} of {rays}", bundle.name);
+    let message = format!("{}: {name} is wrong on {wrong} of {rays} {noun}", bundle.name);
     let of_item = bundle.listed.iter().filter(|one| one.key == item.key).take(MAX_SHOWN_DEFECTS);
     let mut lines: Vec<String> = of_item
         .flat_map(|WrongRay { line, .. }| {

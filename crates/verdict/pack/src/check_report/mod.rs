@@ -1,4 +1,4 @@
-//! What is told of a check: one form for all packs, from which every report is made.
+//! A check in its one form for all packs, from which every report is made.
 //!
 //! ```text
 //! findings   bundles, items and wrong rays; their document, which `raypencil-report` prints

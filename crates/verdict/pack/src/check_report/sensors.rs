@@ -1,12 +1,13 @@
 //! A check of sensors in the form of every check.
 
 use raypencil_judge::{
-    Check, Class, Item, ItemTally, Largest, Recorded, SensorResult, key_of, listed_defects, name_of, unit_of,
+    Answers, Check, Class, Item, ItemTally, Largest, Recorded, SensorResult, key_of, listed_defects, name_of,
+    unit_of,
 };
 use raypencil_report::{
     DefectLine, Document, JunitSuite, MapPair, SensorPlots, count, counted, max_side_of_pictures,
 };
-use raypencil_scene::{Image, Maybe};
+use raypencil_scene::{Image, Maybe, SensorMap};
 use raypencil_scene_io::{Subject, probe_command};
 use serde_json::json;
 
@@ -22,6 +23,11 @@ use crate::published::PackIdentity;
 const PICTURES_OF_SENSOR: u64 = 3;
 
 impl Checked {
+    /// Whether something was compared, none of it is wrong, and what was compared proves something.
+    pub fn passes(&self) -> bool {
+        findings(self).verdict() == "agrees"
+    }
+
     /// The check, with its sets of rays, for a screen and for programs.
     pub fn document(&self) -> Document {
         findings(self).document()
@@ -39,17 +45,20 @@ impl Checked {
 
 fn findings(checked: &Checked) -> CheckFindings {
     let Checked { subject, recorded, check, diagnosis, is_blind, verified, pack, .. } = checked;
-    let mut bundles = sensor_bundles(subject, check, Some(recorded));
+    let mut bundles = sensor_bundles(subject, check, Some((recorded, &checked.exact)));
     bundles.extend(checked.ray_sets.iter().cloned());
     let totals = listed_totals(check);
     let totals = totals.iter().map(|(item, tally)| {
         let storage = recorded.storage_of_item(*item).map(|how| how.to_string());
         item_findings(subject, *item, tally, storage)
     });
-    // Of sets of rays, the hits: their values are in their own bundles.
+    // A row for each set of rays: all that is wrong with its rays, and the worst of its values.
     let of_sets = checked.ray_sets.iter().filter_map(|set| {
-        let hit = set.items.first()?;
-        Some(ItemFindings { name: set.name.clone(), ..hit.clone() })
+        let ratios = set.items.iter().filter_map(|item| item.worst_ratio.as_ref());
+        let worst_ratio = ratios.reduce(|worst, other| if other.value > worst.value { other } else { worst });
+        let hits = set.items.first()?.clone();
+        let name = set.name.clone();
+        Some(ItemFindings { name, by_class: set.by_class, worst_ratio: worst_ratio.cloned(), ..hits })
     });
     let diagnosis_json = diagnosis.as_ref().map(|found| {
         let mistakes = found.mistakes.iter().map(|mistake| {
@@ -83,7 +92,6 @@ fn findings(checked: &Checked) -> CheckFindings {
         arithmetic: Some(recorded.precision),
         totals: totals.chain(of_sets).collect(),
         worst,
-        hits_anything: checked.hits_anything(),
         coarseness: recorded.coarseness().map(|coarse| coarse.to_string()),
         headline: None,
         why: checked.why(),
@@ -98,18 +106,24 @@ fn findings(checked: &Checked) -> CheckFindings {
 
 /// The suite of one check of sensors. `why`: the mistake that explains its failures, if one does.
 pub fn check_suite(subject: &Subject, candidate: &str, check: &Check, why: Option<&str>) -> JunitSuite {
-    suite(&subject.name, candidate, &sensor_bundles(subject, check, None), why)
+    suite(&subject.name, candidate, &sensor_bundles(subject, check, None), why, "rays")
 }
 
 /// A bundle for each sensor.
-fn sensor_bundles(subject: &Subject, check: &Check, recorded: Option<&Recorded>) -> Vec<BundleFindings> {
+fn sensor_bundles(
+    subject: &Subject,
+    check: &Check,
+    of_pack: Option<(&Recorded, &Answers)>,
+) -> Vec<BundleFindings> {
     let bundle = |sensor: &SensorResult| {
         let items = sensor.items.iter().map(|(item, tally)| {
-            let storage = recorded.and_then(|recorded| recorded.storage.get(&(sensor.sensor, item)));
+            let storage = of_pack.and_then(|(recorded, _)| recorded.storage.get(&(sensor.sensor, item)));
             item_findings(subject, item, tally, storage.map(ToString::to_string))
         });
         BundleFindings {
             name: sensor.sensor.to_string(),
+            hits_anything: of_pack.is_none_or(|(_, exact)| map_hits(exact.map(sensor.sensor))),
+            must_hit: false,
             by_class: sensor.by_class,
             not_compared: sensor.not_compared,
             ruled: sensor.judged,
@@ -171,6 +185,11 @@ fn item_findings(subject: &Subject, item: Item, tally: &ItemTally, storage: Opti
         worst_error: worst(&tally.worst_error),
         worst_ratio: worst(&tally.worst_ratio),
     }
+}
+
+/// Whether any ray of a sensor hits, by its exact map.
+fn map_hits(map: &SensorMap) -> bool {
+    map.range.iter().flat_map(|range| range.cells()).any(|range| range.get().is_some())
 }
 
 /// Sentences on what was compared, what was not, and what of the pack was verified.

@@ -10,7 +10,7 @@ use crate::input::clause::LoadingClause;
 use crate::published::PackLabel;
 
 /// Wrong faces that are listed, at most.
-const MAX_LISTED: usize = 12;
+const MAX_LISTED: usize = 40;
 
 impl InputChecked {
     /// The check for every report.
@@ -40,9 +40,18 @@ fn findings(checked: &InputChecked) -> CheckFindings {
     };
     let items: Vec<ItemFindings> = LoadingClause::ALL.iter().map(item).collect();
     let by_class = std::array::from_fn(|k| items.iter().map(|item| item.by_class[k]).sum());
-    let listed: Vec<WrongRay> = checked.wrong.iter().take(MAX_LISTED).map(wrong_face).collect();
+    // The first wrong face of each clause, then the others: a mistake shows in what it breaks.
+    let is_first = |(index, wrong): &(usize, &WrongFace)| {
+        checked.wrong[..*index].iter().all(|earlier| earlier.truth.clause != wrong.truth.clause)
+    };
+    let (first, later): (Vec<_>, Vec<_>) = checked.wrong.iter().enumerate().partition(is_first);
+    let listed: Vec<WrongRay> =
+        first.into_iter().chain(later).take(MAX_LISTED).map(|(_, wrong)| wrong_face(wrong)).collect();
     let bundle = BundleFindings {
         name: "triangles".into(),
+        // Triangles are given, whatever they are.
+        hits_anything: true,
+        must_hit: false,
         by_class,
         not_compared: 0,
         ruled: checked.wrong.len() as u64,
@@ -54,6 +63,9 @@ fn findings(checked: &InputChecked) -> CheckFindings {
         true => None,
         false => Some("Reflectivities are not given.".to_string()),
     };
+    let triangles = json!({
+        "faces": checked.faces, "given": checked.given, "reflectivity_given": checked.has_reflectivity,
+    });
     CheckFindings {
         form: PackForm::Triangles,
         pack: "input".into(),
@@ -66,13 +78,12 @@ fn findings(checked: &InputChecked) -> CheckFindings {
         bundles: vec![bundle],
         totals: items,
         worst: listed.into_iter().map(|wrong| wrong.line).collect(),
-        hits_anything: true,
         coarseness: None,
         headline: Some(headline(checked)),
         why: None,
         notes: reflectivity.into_iter().collect(),
         facts: vec![("Faces given", checked.given.to_string())],
-        of_form: serde_json::Map::new(),
+        of_form: [("triangles".to_string(), triangles)].into_iter().collect(),
         pictures: String::new(),
         explorer: String::new(),
     }
@@ -84,14 +95,14 @@ fn wrong_face(wrong: &WrongFace) -> WrongRay {
     let (said, exact) = match (corners, reflectivity) {
         (None, _) => ("nothing".to_string(), format!("{:?}", truth.corners)),
         (Some(_), Some(said)) => (format!("the reflectivity {said}"), truth.reflectivity.to_string()),
-        (Some(said), None) => (format!("the corners {said:?}"), format!("{:?}", truth.corners)),
+        (Some(said), None) => (format!("{said:?}"), format!("{:?}", truth.corners)),
     };
     WrongRay {
         key: truth.clause.key().into(),
         line: DefectLine {
             place: format!("face {face}"),
             quantity: truth.clause.key().into(),
-            words: format!("given is {said}; true is {exact}"),
+            words: format!("is given as {said}; true is {exact}"),
             what: truth.clause.sentence().into(),
             ..DefectLine::default()
         },

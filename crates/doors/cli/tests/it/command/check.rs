@@ -128,7 +128,8 @@ fn every_quantity_is_checked() {
             image.cells_mut()[at] *= factor;
         });
         let output = check(folder.path(), "facets", &[]);
-        assert_fails(&output, &["rays are wrong"]);
+        assert_fails(&output, &["1 of "]);
+        assert_fails(&output, &[" rays is wrong."]);
     }
     // Discrete quantities: a wrong face, a neighbour of the true pixel, a visible hit that is called hidden.
     for (file, change) in [

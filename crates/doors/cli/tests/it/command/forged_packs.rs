@@ -131,8 +131,7 @@ fn a_check_says_what_it_verified() {
     assert_eq!(json["verified"], serde_json::json!({ "answers": 128, "of": 128, "ray_files": 2 }));
     // Which pack it is: not a published one.
     let (_, sha256) = file_sha256_hex(&whole.path().join("pack/manifest.json")).unwrap();
-    let expected =
-        serde_json::json!({ "sha256": sha256, "version": null, "licence": null, "published": false });
+    let expected = serde_json::json!({ "name": "scene", "sha256": sha256, "version": null, "licence": null, "published": false });
     assert_eq!(json["pack"], expected);
     assert!(said.contains(&format!("The pack (sha256 {}...): ", &sha256[..12])), "{said}");
 }

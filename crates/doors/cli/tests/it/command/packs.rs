@@ -73,8 +73,7 @@ fn an_input_pack_tests_a_loader() {
     fs::create_dir(folder.path().join("mine")).expect("a folder");
     write_npy(folder.path().join("mine/triangles.npy"), &[&Image::filled(9, 29, 0.5)]).expect("a file");
     let wrong = raypencil(folder.path(), &["check", "input", "mine", "-o", "out"]);
-    let words =
-        ["✗ 28 of 28 faces are wrong; 29 are given.", "face 0, axes: given is the corners", "glTF is y up"];
+    let words = ["✗ 28 of 28 faces are wrong; 29 are given.", "face 0, axes: is given as [", "glTF is y up"];
     assert_fails(&wrong, &words);
     let json = fs::read(folder.path().join("out/check.json")).expect("a file");
     let json: serde_json::Value = serde_json::from_slice(&json).expect("JSON");
