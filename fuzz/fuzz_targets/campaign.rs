@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use libfuzzer_sys::fuzz_target;
 use raypencil::campaign::records::{merge_bytes, record_from_bytes, sealed};
-use raypencil::campaign::{Campaign, campaign_json, campaign_screen};
+use raypencil::campaign::{Campaign, campaign_document};
 use serde_json::Value;
 
 /// The text, with the version of this program and the digest of its scenes. Another text stays as it is.
@@ -38,8 +38,9 @@ fuzz_target!(|bytes: &[u8]| {
     let results = vec![(PathBuf::from("any.json"), text)];
     if let Ok(Some(merged)) = merge_bytes(&results, None) {
         assert!(merged.terrains.iter().map(|one| one.terrain).eq(0..merged.campaign.terrains));
-        assert!(serde_json::from_str::<Value>(&campaign_json(&merged)).is_ok());
-        assert!(!campaign_screen(&merged).is_empty());
+        let document = campaign_document(&merged, |_| false);
+        assert!(serde_json::from_str::<Value>(&document.json()).is_ok());
+        assert!(!document.screen().is_empty());
         // The same result a second time is a shard too many.
         let twice = [results.clone(), results].concat();
         assert!(merge_bytes(&twice, None).is_err());

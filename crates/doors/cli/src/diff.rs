@@ -67,7 +67,7 @@ pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
         false => document.screen(),
     });
     if let Some(folder) = command.output.as_deref().filter(|_| !json) {
-        say(&format!("Report: {}\n", folder.join("report.html").display()));
+        say(&format!("  Report: {}\n", folder.join("report.html").display()));
     }
     Ok(if difference.passes() { Outcome::Fine } else { Outcome::Differs })
 }

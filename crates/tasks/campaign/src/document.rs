@@ -30,7 +30,7 @@ const CLASSES: [&str; Class::COUNT] = ["agree", "tie", "rounding", "approximatio
 /// What the scenes of a terrain are.
 const PARTS: &str = "own: a random rig, or a scene of one's own; both renderers exact. paper: the same, scanline with the paper's \
                      approximations. aimed: narrow beams through vertices, edges and silhouettes. lattice: vertices that lie exactly \
-                     on rays, beside random terrains. Of aimed and lattice the referee rules on every ray.";
+                     on rays, beside random terrains. The referee rules on every ray of aimed and lattice.";
 
 /// What makes a terrain hard.
 const HARD: &str = "Hard for a renderer is what is near a decision: edges that rays pass within rounding, corners that several faces \
@@ -88,6 +88,7 @@ pub fn campaign_document(merged: &Merged, has: impl Fn(&str) -> bool) -> Documen
             text("", vec![format!("{} rays were judged exactly.", count(all.judged))], Room::Screen),
             text("No answer", failures(merged, MAX_LISTED_RAYS), Room::Wide),
             text("No answer", failures(merged, MAX_RAYS_ON_SCREEN), Room::Screen),
+            text("", folders(merged, defects), Room::Wide),
             Block::Findings {
                 title: "Wrong rays",
                 worst,
@@ -97,7 +98,7 @@ pub fn campaign_document(merged: &Merged, has: impl Fn(&str) -> bool) -> Documen
             Block::Table { title: "Hardest terrains", grid: hardest(merged) },
             text("", vec![HARD.into()], Room::Wide),
         ],
-        suites: PartName::ALL.into_iter().map(|part| suite(merged, part)).collect(),
+        suites: PartName::ALL.into_iter().map(|part| suite(merged, part)).chain([whole(&all)]).collect(),
         format: FORMAT,
         verdict: match (merged.passes(), all.compared > 0 && all.hits == 0) {
             (true, _) => "agree",
@@ -139,6 +140,18 @@ fn terrains_words(merged: &Merged, faces: u64) -> String {
         Some(names) => format!("of one's own: {names}"),
     };
     format!("{} terrains {of}, {} faces in all", count(merged.campaign.terrains), count(faces))
+}
+
+/// Where the scenes of wrong rays lie.
+fn folders(merged: &Merged, defects: u64) -> Vec<String> {
+    let words = match (defects, &merged.campaign.candidate) {
+        (0, _) => return Vec::new(),
+        (_, None) => {
+            "Each scene with a wrong ray is in the folder wrong of its shard, beside the smallest scene that still shows one."
+        }
+        (_, Some(_)) => "The most telling ones are packs of single rays in the folder misses of their shard.",
+    };
+    vec![words.into()]
 }
 
 fn warnings(merged: &Merged) -> Vec<String> {
@@ -307,6 +320,21 @@ fn hardest_part(terrain: &TerrainRecord) -> PartName {
         }
     }
     hardest.map_or(PartName::Own, |part| part.part)
+}
+
+/// Test results of the whole: cases that pass because nothing is compared or hit would look like a pass.
+fn whole(all: &CampaignTotal<'_>) -> JunitSuite {
+    let mut suite = JunitSuite::new("campaign");
+    let (compared, hit) = ("something is compared", "something is hit");
+    suite.push(match all.compared {
+        0 => JunitCase::failed(compared, "nothing_compared", "nothing was compared"),
+        _ => JunitCase::passed(compared),
+    });
+    suite.push(match all.hits {
+        0 => JunitCase::failed(hit, "nothing_hit", "no ray hits the terrain"),
+        _ => JunitCase::passed(hit),
+    });
+    suite
 }
 
 /// Test results: a suite for each kind of scene, a case for each terrain.

@@ -11,10 +11,10 @@ use crate::job::DriveJob;
 use crate::run::DriveRun;
 use crate::summary::drive_data;
 
-/// What is drawn of the start.
+/// Caption of the plan.
 const PLAN: &str = "The start from above: the terrain's bounds, the vehicle as an arrow, and what each sensor sees up to its maximum range.";
 
-/// What is drawn of the way.
+/// Caption of the animation.
 const ANIMATION: &str = "The drive. Left: the camera's view with the edge points of the stripes. Right: the local terrain map from \
                          above, x to the right, y upwards, with the vehicle in the middle; dark is low, bright is high.";
 
@@ -46,7 +46,7 @@ pub fn drive_document(job: &DriveJob, run: &DriveRun) -> Document {
             Block::Table { title: "The drive", grid: told },
             text("", warnings.collect(), Room::Everywhere),
             Block::Table { title: "Time", grid: stages },
-            text("Two sides", difference_lines(run), Room::Everywhere),
+            text("Two sides", two_sides(run), Room::Everywhere),
             text("Where everything stands at the start", run.whereabouts.lines(), Room::Wide),
         ],
         suites: vec![suite(job, run)],
@@ -84,6 +84,13 @@ pub(crate) fn drive_document_with_pictures(
     document.blocks.push(Block::Text { title: "", lines: vec![BESIDE.into()], room: Room::Wide });
     document.explorer = explorer(job, run);
     document
+}
+
+/// The differences of two sides, below a line that says so.
+fn two_sides(run: &DriveRun) -> Vec<String> {
+    let lines = difference_lines(run);
+    let head = (!lines.is_empty()).then(|| "Both sides:".to_string());
+    head.into_iter().chain(lines).collect()
 }
 
 /// Test results: a case for each stage of two sides; of one side that it was driven.

@@ -19,6 +19,9 @@ use crate::maps::ply::write_ply;
 use crate::maps::vectors::{VectorOnMap, vectors_csv, vectors_geojson};
 use crate::run::DriveRun;
 
+/// Name of the file that marks a complete folder.
+const DATA: &str = "summary.json";
+
 /// Files that [`write_drive`] wrote.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WrittenDrive {
@@ -41,7 +44,7 @@ pub fn write_drive(
     folder: &Path,
     progress: &dyn Progress,
 ) -> Result<WrittenDrive, FolderError> {
-    let summary = begin_output_folder(folder, "summary.json")?;
+    let summary = begin_output_folder(folder, DATA)?;
     let mut files = Vec::new();
     let mut write = |name: &str, contents: &[u8]| -> Result<PathBuf, FolderError> {
         let path = folder.join(name);
@@ -74,13 +77,13 @@ pub fn write_drive(
         write("navigator-map.geojson", vectors_geojson(&vectors, *frame).as_bytes())?;
         write("navigator-map.csv", vectors_csv(&vectors).as_bytes())?;
     }
-    let texts = drive_document_with_pictures(job, run, &figures, &animation).files("summary.json");
+    let texts = drive_document_with_pictures(job, run, &figures, &animation).files(DATA);
     let texts =
         texts.map_err(|(name, source)| FileError::Io { path: folder.join(name), action: "write", source })?;
-    let [page, junit, markdown, data] = texts.map(|(_, text)| text);
-    let report = write("report.html", page.as_bytes())?;
-    write("junit.xml", junit.as_bytes())?;
-    write("summary.md", markdown.as_bytes())?;
+    let (data, reports): (Vec<_>, Vec<_>) = texts.into_iter().partition(|(name, _)| *name == DATA);
+    for (name, text) in reports {
+        write(name, text.as_bytes())?;
+    }
 
     let named = |name: &str| folder.join(name);
     write_npy(named("local-map.npy"), &[&elevation_image(&run.map)])?;
@@ -95,9 +98,9 @@ pub fn write_drive(
         files.extend(["obstacle-map-nav2.pgm", "obstacle-map-nav2.yaml"].map(named));
     }
 
-    write_atomically(&summary, |file| file.write_all(data.as_bytes()))?;
+    write_atomically(&summary, |file| data.iter().try_for_each(|(_, text)| file.write_all(text.as_bytes())))?;
     files.push(summary.clone());
-    Ok(WrittenDrive { files, report, summary })
+    Ok(WrittenDrive { files, report: folder.join("report.html"), summary })
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 
 use crate::counts::{CellCounts, scans, sector_counts};
 use crate::differences::{Differences, StageDifferences};
+use crate::document::drive_document;
 use crate::job::DriveJob;
 use crate::labels::label_word;
 use crate::run::DriveRun;
@@ -32,7 +33,7 @@ use crate::sector_truth::SectorTruth;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
-    format!("{:#}\n", Value::Object(drive_data(job, run)))
+    drive_document(job, run).json()
 }
 
 /// The keys of the summary.

@@ -1,7 +1,7 @@
 //! A finished sweep as the document that every report prints.
 
 use raypencil_report::{
-    Block, Column, Document, Grid, JunitCase, JunitSuite, Outcome as Verdict, Room, counted, number,
+    Block, Column, Document, Grid, JunitCase, JunitSuite, Outcome as Verdict, Room, counted, escaped, number,
 };
 use serde_json::{Map, Value, json};
 
@@ -65,8 +65,13 @@ pub fn sweep_document(
         Some(more @ 1..) => vec![format!("... and {more} more in the table")],
         _ => Vec::new(),
     };
+    let more_of_page = match table.runs().checked_sub(MAX_RUNS_ON_PAGE) {
+        Some(more @ 1..) => vec![format!("{more} more runs are in the table.")],
+        _ => Vec::new(),
+    };
     let picture = |chart: &Drawn| {
         let Drawn { name, source } = chart;
+        let name = escaped(name);
         format!(
             "<figure><img src=\"{source}\" alt=\"{name}\" style=\"max-width:100%;height:auto\"></figure>\n"
         )
@@ -87,6 +92,7 @@ pub fn sweep_document(
             Block::Pictures { title: "Charts", html: drawn.iter().map(picture).collect(), stays: true },
             Block::Table { title: "Runs", grid: grid(finished, table) },
             text(more, Room::Screen),
+            text(more_of_page, Room::Wide),
             text(told, Room::Everywhere),
             text(files, Room::Screen),
         ],

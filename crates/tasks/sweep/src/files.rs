@@ -65,6 +65,9 @@ pub struct Written {
     pub charts: Vec<PathBuf>,
 }
 
+/// Name of what is printed for programs; it is not written.
+const DATA: &str = "summary.json";
+
 /// Writes the table, the charts, and the reports `report.html`, `junit.xml` and `summary.md`.
 ///
 /// # Errors
@@ -92,9 +95,10 @@ pub fn write_sweep(
         written.charts.extend([file("svg"), file("png")]);
         drawn.push(Drawn { name: chart.file_stem(), source: drawing.data_uri() });
     }
-    let texts = sweep_document(finished, table, &written, &drawn).files("summary.json");
+    let texts = sweep_document(finished, table, &written, &drawn).files(DATA);
     let texts = texts.map_err(|(name, source)| FileError::io(&folder.join(name), "write", source))?;
     // What programs read is the table; the summary is printed.
-    write_texts(folder, &texts[..3])?;
+    let is_report = |(name, _): &(&str, String)| *name != DATA;
+    write_texts(folder, &texts.into_iter().filter(is_report).collect::<Vec<_>>())?;
     Ok(written)
 }

@@ -9,7 +9,9 @@ use serde_json::{Value, json};
 pub type Named = (String, Value);
 
 /// Parts of the summary of a drive that are no results: what was set, where it was written, how long it took.
-const NO_RESULTS_OF_A_DRIVE: [&str; 16] = [
+const NO_RESULTS_OF_A_DRIVE: [&str; 18] = [
+    "verdict",
+    "headline",
     "format",
     "format_version",
     "version",

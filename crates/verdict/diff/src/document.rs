@@ -53,7 +53,7 @@ pub fn diff_document(difference: &Difference, sides: &Sides) -> Document {
     let text = |title, lines, room| Block::Text { title, lines, room };
     Document {
         run: format!("raypencil diff {a} {b}"),
-        question: format!("A {a}, B {b}"),
+        question: format!("two recordings\nA {a}\nB {b}"),
         outcome: if difference.passes() { Outcome::Agrees } else { Outcome::Fails },
         headline: format!("{}.", headline(difference)),
         remarks: vec![format!("Allowed: {}.", allowed(&difference.thresholds))],
@@ -62,7 +62,8 @@ pub fn diff_document(difference: &Difference, sides: &Sides) -> Document {
             Block::Table { title: "Every channel", grid: grid(difference) },
             text("", worst_cells(difference), Room::Screen),
             text("Who is right", rulings(difference), Room::Everywhere),
-            text("", others(difference), Room::Everywhere),
+            text("", others(difference, first_keys), Room::Screen),
+            text("", others(difference, |keys| keys.join(", ")), Room::Wide),
             text("How to read this page", READING.map(String::from).into(), Room::Wide),
         ],
         suites: vec![suite(difference, sides)],
@@ -151,7 +152,7 @@ fn worst_cells(difference: &Difference) -> Vec<String> {
 }
 
 /// Channels that are the same, and those of one side only.
-fn others(difference: &Difference) -> Vec<String> {
+fn others(difference: &Difference, named: impl Fn(&[String]) -> String) -> Vec<String> {
     let equal = difference.channels.iter().filter(|channel| channel.unequal == 0).count() as u64;
     let verb = if equal == 1 { "is" } else { "are" };
     let mut lines = Vec::new();
@@ -161,7 +162,7 @@ fn others(difference: &Difference) -> Vec<String> {
     let ignored = if difference.thresholds.shared_only { " (not counted: --shared-only)" } else { "" };
     for (keys, side) in difference.only.iter().zip(["A", "B"]) {
         if !keys.is_empty() {
-            lines.push(format!("Only in {side}: {}{ignored}", first_keys(keys)));
+            lines.push(format!("Only in {side}: {}{ignored}", named(keys)));
         }
     }
     lines

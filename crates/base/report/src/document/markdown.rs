@@ -17,7 +17,7 @@ pub(super) fn markdown(document: &Document) -> String {
     for remark in &document.remarks {
         let _ = write!(text, "\n{}\n", markdown_text(remark));
     }
-    let _ = write!(text, "\nraypencil {VERSION}: {}\n\n", markdown_text(&document.question));
+    let _ = write!(text, "\nraypencil {VERSION}: {}\n\n", markdown_text(document.asked()));
     for (name, value) in &document.facts {
         let _ = writeln!(text, "* {name}: {}", markdown_code(value));
     }
@@ -28,7 +28,8 @@ pub(super) fn markdown(document: &Document) -> String {
                     let _ = write!(text, "\n**{title}**\n");
                 }
                 lines.iter().for_each(|line| {
-                    let _ = write!(text, "\n{}\n", markdown_text(line));
+                    // Four blanks would make code of it.
+                    let _ = write!(text, "\n{}\n", markdown_text(line.trim_start()));
                 });
             }
             Block::Table { title, grid } if grid.rows(false).next().is_some() => {

@@ -144,7 +144,7 @@ pub enum Block {
 pub struct Document {
     /// What was run, such as `raypencil check yard mine`.
     pub run: String,
-    /// What was asked, in one line.
+    /// What was asked, in one line; a screen shows further lines below it.
     pub question: String,
     /// What became of it.
     pub outcome: Outcome,
@@ -162,13 +162,18 @@ pub struct Document {
     pub format: u32,
     /// The outcome in one word, for programs.
     pub verdict: &'static str,
-    /// What was found, for programs. The keys `format`, `version`, `verdict`, `headline` are added.
+    /// What was found, for programs. The keys `format`, `version`, `verdict` and `headline` are added where they are missing.
     pub data: Map<String, Value>,
     /// Data, style and script of the part of the page that answers when asked; empty if there is none.
     pub explorer: String,
 }
 
 impl Document {
+    /// The first line of the question.
+    fn asked(&self) -> &str {
+        self.question.lines().next().unwrap_or_default()
+    }
+
     /// The headline after the sign, if there is one.
     fn signed(&self) -> String {
         format!("{} {}", self.outcome.sign(), self.headline).trim_start().to_string()
@@ -229,10 +234,10 @@ impl Document {
     pub fn files(
         &self,
         data_name: &'static str,
-    ) -> Result<[(&'static str, String); 4], (&'static str, io::Error)> {
+    ) -> Result<Vec<(&'static str, String)>, (&'static str, io::Error)> {
         let page = self.page().map_err(|error| ("report.html", io::Error::other(error)))?;
         let junit = self.junit().map_err(|error| ("junit.xml", error))?;
-        Ok([
+        Ok(vec![
             ("report.html", page),
             ("junit.xml", junit),
             ("summary.md", self.markdown()),

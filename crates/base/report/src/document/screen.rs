@@ -17,8 +17,7 @@ pub(super) fn screen(document: &Document) -> String {
 
 pub(super) fn screen_of_width(document: &Document, chars: usize) -> String {
     let question = format!("raypencil {VERSION}: {}", document.question);
-    let mut text = without_beginning(&question, chars);
-    text.push('\n');
+    let mut text: String = question.lines().map(|line| without_beginning(line, chars) + "\n").collect();
     for block in &document.blocks {
         let part = of_block(block, chars);
         if !part.is_empty() {

@@ -82,7 +82,8 @@ fn all_writers_say_the_same() {
     assert!(page.find("rays is wrong").unwrap() < page.find("Every quantity").unwrap());
     assert!(markdown.starts_with("### ✗ 1 of 1,024 rays is wrong.\n"), "{markdown}");
     assert!(document.junit().unwrap().contains("failures=\"1\""));
-    let names = document.files("check.json").unwrap().map(|(name, _)| name);
+    let files = document.files("check.json").unwrap();
+    let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
     assert_eq!(names, ["report.html", "junit.xml", "summary.md", "check.json"]);
 }
 

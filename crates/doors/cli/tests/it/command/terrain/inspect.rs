@@ -157,7 +157,7 @@ fn repair_does_not_change_what_rays_hit() {
             }
             // Equal to the last bit. Removed faces come last in this ground, so that faces keep their indices.
             let shown = screen(folder.path(), &["diff", "nasty", "mended"], 0);
-            assert!(shown.contains("PASS 28 channels compared"), "{shown}");
+            assert!(shown.contains("✓ 28 channels compared"), "{shown}");
         }
     }
 }
