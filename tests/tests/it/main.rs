@@ -23,4 +23,5 @@ mod report_page;
 mod reproducers;
 mod rulings;
 mod single_rays;
+mod truth_tables;
 mod watertight;

@@ -11,13 +11,11 @@
 //!
 //! 1. `error`: [`DriveError`]; `labels`: words of labels;
 //! 2. `beam_columns`, `warnings`, `job`: [`DriveJob`], everything that defines a drive;
-//! 3. `shadow_map`, `sun`: light of sun and sky behind the stripes; `through_optics`: a renderer behind the camera's
-//!    optics;
+//! 3. `shadow_map`, `sun`: light of sun and sky behind the stripes; `through_optics`: [`ThroughOptics`], a renderer
+//!    behind the camera's optics;
 //! 4. `recorded_exposure`, `differences`: [`Differences`] between two sides, stage by stage;
 //! 5. `swept_ground`, `sector_truth`: [`SectorTruth`], the obstacle maps against what the vehicle can pass;
 //!    `point_errors`: [`PointErrors`], the points against the true ground;
-//!    `noise_level`: [`NoiseLevel`]s for its table;
-//!    `sensitivity`, `pointing`: [`pointing_table`], blur against pointing errors;
 //! 6. `camera_view`, `animation_frame`: pictures of a frame;
 //! 7. `recording`: [`RecordContents`], images, points, poses and maps for other people's programs; `stripe_file`:
 //!    [`StripeFile`], their stripes in place of the rover's;
@@ -64,15 +62,12 @@ mod history;
 mod job;
 mod labels;
 mod maps;
-mod noise_level;
 mod point_errors;
-mod pointing;
 mod recorded_exposure;
 mod recording;
 mod renderer_drive;
 mod run;
 mod sector_truth;
-mod sensitivity;
 mod shadow_map;
 mod stripe_file;
 mod summary;
@@ -91,15 +86,13 @@ pub use maps::obstacle_grid::occupancy_grid;
 pub use maps::occupancy::{Occupancy, OccupancyGrid, occupancy_files, write_occupancy};
 pub use maps::ply::{MarkedPoint, write_ply};
 pub use maps::vectors::{VectorOnMap, vectors_csv, vectors_geojson};
-pub use noise_level::NoiseLevel;
 pub use point_errors::PointErrors;
-pub use pointing::pointing_table;
 pub use recording::RecordContents;
 pub use run::{DriveExtras, DriveProgress, DriveRun, drive, drive_with};
 pub use sector_truth::{Missed, NotFound, SectorTruth};
-pub use sensitivity::StripeSensitivity;
 pub use stripe_file::StripeFile;
 pub use summary::drive_json;
+pub use through_optics::ThroughOptics;
 
 /// The README's example, compiled.
 #[cfg(doctest)]

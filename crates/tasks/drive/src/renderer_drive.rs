@@ -55,7 +55,7 @@ impl<'a> RendererDrive<'a> {
     ) -> Result<Self, SceneError> {
         Ok(Self {
             job,
-            renderer: ThroughOptics::new(renderer, job, sun),
+            renderer: ThroughOptics::new(renderer, job).in_sunlight(sun),
             drive: Drive::new(job.plan.clone(), Arc::clone(&job.mesh))?,
             exposures: 0,
             pattern: None,

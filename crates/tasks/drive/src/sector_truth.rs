@@ -235,38 +235,6 @@ impl SectorTruth {
             ),
         ]
     }
-
-    /// Header of a Markdown table of [`SectorTruth::table_row`]s.
-    pub const fn table_header() -> &'static str {
-        "\
-| drive | | sectors | found | missed: errors, spacing, rule | not seen: hidden, not swept, outside | false | unknown: not measured, may hide, near limit | clear | clear way |
-| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
-    }
-
-    /// Row of a Markdown table: the drive, the settings that were changed, and the counts.
-    pub fn table_row(&self, drive: &str, settings: &str) -> String {
-        let Self { missed, not_found, .. } = self;
-        format!(
-            "| {drive} | {settings} | {} | {} | {} = {} + {} + {} ({}) | {} + {} + {} | {} ({}) | {} + {} + {} | {} | {:.2} m |",
-            count(self.sectors),
-            count(self.found),
-            count(missed.all()),
-            count(missed.by_errors),
-            count(missed.by_spacing),
-            count(missed.by_rule),
-            percent(missed.all(), self.found + missed.all()),
-            count(not_found.hidden),
-            count(not_found.not_swept),
-            count(not_found.outside),
-            count(self.false_obstacle),
-            percent(self.false_obstacle, self.sectors),
-            count(self.unknown_not_measured + self.unknown_beyond_map),
-            count(self.unknown_may_hide),
-            count(self.unknown_near_limit),
-            count(self.clear),
-            self.clear_mm as f64 / 1000.0 / self.sectors.max(1) as f64,
-        )
-    }
 }
 
 /// First place of a sector at which the vehicle cannot stand.
@@ -305,19 +273,6 @@ fn true_maps(map: &ElevationMap, ground: &HeightIndex, global_from_vehicle: &Pos
         truth.insert(elevations);
         truth
     })
-}
-
-/// Percentage of a part, with a tenth of a percent below 9.95 %. "0 %" and "100 %" mean exactly none and exactly all.
-fn percent(part: u64, all: u64) -> String {
-    let share = 100.0 * part as f64 / all.max(1) as f64;
-    match share {
-        _ if part == 0 => "0 %".into(),
-        ..0.05 => "< 0.1 %".into(),
-        ..9.95 => format!("{share:.1} %"),
-        // A part that is not all is never 100 %.
-        99.5.. if part < all => format!("{:.1} %", share.min(99.9)),
-        _ => format!("{share:.0} %"),
-    }
 }
 
 #[cfg(test)]

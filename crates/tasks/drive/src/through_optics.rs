@@ -9,8 +9,9 @@ use raypencil_sensor::{Optics, PointSource};
 use crate::job::DriveJob;
 use crate::sun::Sun;
 
-/// Renderer whose flux has passed the optics of a job. It also computes the sun's background of each scene.
-pub(crate) struct ThroughOptics<'a> {
+/// Renderer whose flux has passed the optics of a job: for a drive that is stepped by itself. ([`crate::drive()`] has it
+/// already.)
+pub struct ThroughOptics<'a> {
     inner: &'a dyn Renderer,
     optics: &'a Optics,
     /// Background of the scene that was rendered last, watts per pixel.
@@ -34,9 +35,15 @@ pub(crate) struct RenderTimes {
 }
 
 impl<'a> ThroughOptics<'a> {
-    pub(crate) fn new(inner: &'a dyn Renderer, job: &'a DriveJob, sun: Option<&'a Sun>) -> Self {
+    /// `inner` behind the optics of `job`, without a sun.
+    pub fn new(inner: &'a dyn Renderer, job: &'a DriveJob) -> Self {
         let (background, times) = (Mutex::default(), Mutex::default());
-        Self { inner, optics: &job.optics, background, job, sun, times, lit: None }
+        Self { inner, optics: &job.optics, background, job, sun: None, times, lit: None }
+    }
+
+    /// The same, computing also the sun's background of each scene.
+    pub(crate) fn in_sunlight(self, sun: Option<&'a Sun>) -> Self {
+        Self { sun, ..self }
     }
 
     /// The same, keeping the lit points of each scene for [`ThroughOptics::take_lit`].
@@ -154,7 +161,7 @@ mod tests {
             let job = DriveJob::new(&loaded, None, String::new()).unwrap();
             let renderer = Tracer::new();
             let mut drive = Drive::new(job.plan.clone(), job.mesh.clone()).unwrap();
-            let through_optics = ThroughOptics::new(&renderer, &job, None);
+            let through_optics = ThroughOptics::new(&renderer, &job);
             let frame = drive.step(&through_optics, &mut |_, flux| {
                 CameraImage::Numbers(job.sensor.numbers(&flux, None, 0))
             });

@@ -1,17 +1,26 @@
 //! Obstacle maps of the rover against what the vehicle can truly pass, by rules and by noise level, and the table of
 //! pointing errors: the tables of `docs/evidence/results.md` below its mark, as Markdown on standard output.
+//! `tests/tests/it/truth_tables` tests its modules.
 //!
 //! ```sh
 //! cargo run --release -p raypencil --features examples --example truth            # all tables
 //! cargo run --release -p raypencil --features examples --example truth rules      # one: rules, noise, pointing
 //! ```
 
+mod noise_level;
+mod pointing;
+mod sector_table;
+mod sensitivity;
+
 use glam::DVec2;
 use raypencil::Silent;
-use raypencil::drive::{DriveJob, NoiseLevel, SectorTruth, drive, pointing_table};
+use raypencil::drive::{DriveJob, SectorTruth, drive};
 use raypencil::harness::contender;
 use raypencil::io::{Overrides, load};
 use raypencil::rover::{DrivePlan, MapRules, MapSize, Rule, ScanRule, StartRule, TraversabilityRules};
+
+use noise_level::NoiseLevel;
+use pointing::pointing_table;
 
 /// Drives: name in the table, scene, and a further waypoint. (The route of `rocky-drive` ends before the first
 /// obstacle.)
@@ -67,11 +76,11 @@ fn main() -> Result<(), Failure> {
     let row = |name: &str, settings: &str, job: &DriveJob, change: Change| -> Result<(), Failure> {
         let mut job = job.clone();
         change(&mut job.plan);
-        println!("{}", truth(&job)?.table_row(name, settings));
+        println!("{}", sector_table::row(&truth(&job)?, name, settings));
         Ok(())
     };
     if wants("rules") {
-        println!("{}", SectorTruth::table_header());
+        println!("{}", sector_table::HEAD);
         for (name, job) in &jobs {
             row(name, "mended", job, |_| {})?;
             row(name, "as printed", job, printed)?;
@@ -81,7 +90,7 @@ fn main() -> Result<(), Failure> {
         }
     }
     if wants("noise") {
-        println!("\n{}", SectorTruth::table_header());
+        println!("\n{}", sector_table::HEAD);
         for (name, job) in &jobs {
             for level in [NoiseLevel::Modest, NoiseLevel::Coarse] {
                 let job = level.applied(job.clone());

@@ -6,19 +6,17 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::DVec3;
-use raypencil_report::number;
-use raypencil_rover::{
+use raypencil::drive::{DriveError, DriveJob, ThroughOptics};
+use raypencil::report::number;
+use raypencil::rover::{
     Attitude, CameraImage, Detection, Drive, Exposure, Extraction, LocalisationErrors, MeasuredPoint,
     StripeLocation,
 };
-use raypencil_scene::{Image, Pose, Renderer, SceneError};
-use raypencil_sensor::{Optics, Psf};
-use raypencil_terrain::HeightIndex;
+use raypencil::sensor::{Optics, Psf};
+use raypencil::terrain::HeightIndex;
+use raypencil::{Image, Pose, Renderer, SceneError};
 
-use crate::error::DriveError;
-use crate::job::DriveJob;
-use crate::sensitivity::StripeSensitivity;
-use crate::through_optics::ThroughOptics;
+use super::sensitivity::StripeSensitivity;
 
 /// Pitch errors of the table, degrees.
 const PITCHES_DEG: [f64; 4] = [0.01, 0.1, 0.5, 1.0];
@@ -26,17 +24,17 @@ const PITCHES_DEG: [f64; 4] = [0.01, 0.1, 0.5, 1.0];
 /// Shift of a stripe's points between two measurements, column by column of the image. All values but the count are
 /// root mean squares.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-struct StripeShift {
+pub struct StripeShift {
     /// Number of columns in which both measurements have exactly one edge point.
-    columns: u64,
+    pub columns: u64,
     /// Shift of the edge, pixels.
-    rows: f64,
+    pub rows: f64,
     /// Shift of the point's elevation, metres.
-    elevation: f64,
+    pub elevation: f64,
     /// Shift of the point's elevation by [`StripeSensitivity`], metres.
-    formula: f64,
+    pub formula: f64,
     /// Distance of the point before the vehicle, metres (no shift).
-    ahead: f64,
+    pub ahead: f64,
 }
 
 impl StripeShift {
@@ -62,13 +60,13 @@ impl StripeShift {
     }
 
     /// Pitch error that shifts the elevations of these points as far, radians.
-    fn as_pitch(&self) -> f64 {
+    pub fn as_pitch(&self) -> f64 {
         self.elevation / self.ahead
     }
 }
 
 /// Measurement of a drive's first frame.
-struct FirstFrame {
+pub struct FirstFrame {
     /// Measured points, each with its estimated global position.
     points: Vec<(MeasuredPoint, DVec3)>,
     /// Estimated pose, `global_from_vehicle`.
@@ -76,7 +74,7 @@ struct FirstFrame {
 }
 
 /// Drives the first frame of a job, without scans.
-fn first_frame(job: &DriveJob, renderer: &dyn Renderer) -> Result<FirstFrame, DriveError> {
+pub fn first_frame(job: &DriveJob, renderer: &dyn Renderer) -> Result<FirstFrame, DriveError> {
     let mut plan = job.plan.clone();
     plan.scans = None;
     let mut drive = Drive::new(plan, Arc::clone(&job.mesh))?;
@@ -86,7 +84,7 @@ fn first_frame(job: &DriveJob, renderer: &dyn Renderer) -> Result<FirstFrame, Dr
         exposures += 1;
         CameraImage::Numbers(numbers)
     };
-    let frame = drive.step(&ThroughOptics::new(renderer, job, None), &mut camera_pipeline)?;
+    let frame = drive.step(&ThroughOptics::new(renderer, job), &mut camera_pipeline)?;
     let frame = frame
         .ok_or_else(|| SceneError::new("drive.route", job.plan.route.start, "a route with a first frame"))?;
     let points = frame.measured.iter().map(|&one| (one, frame.believed * one.point)).collect();
@@ -95,7 +93,7 @@ fn first_frame(job: &DriveJob, renderer: &dyn Renderer) -> Result<FirstFrame, Dr
 
 /// Shift of one beam's points from one measurement to another. `formula` gives the predicted shift of the elevation of
 /// a point, metres, from the shift of its edge, pixels, and from the point in the vehicle frame.
-fn shift(
+pub fn shift(
     beam: usize,
     from: &FirstFrame,
     to: &FirstFrame,
@@ -200,7 +198,3 @@ pub fn pointing_table(job: &DriveJob, renderer: &dyn Renderer) -> Result<String,
     }
     Ok(out)
 }
-
-#[cfg(test)]
-#[path = "../tests/unit/pointing.rs"]
-mod tests;

@@ -1,11 +1,10 @@
 //! Noise levels of the truth table: how well a rover sees, and how well it knows where it is.
 
 use glam::DVec2;
-use raypencil_rover::{Detection, LocalisationErrors, PositionFixes, Route};
-use raypencil_scene_io::default_threshold;
-use raypencil_sensor::{ImageSensor, preset};
-
-use crate::job::DriveJob;
+use raypencil::drive::DriveJob;
+use raypencil::io::default_threshold;
+use raypencil::rover::{Detection, LocalisationErrors, PositionFixes, Route};
+use raypencil::sensor::{ImageSensor, preset};
 
 /// Noise level of a rover: its image sensor and the errors of its localisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,9 +18,6 @@ pub enum NoiseLevel {
 }
 
 impl NoiseLevel {
-    /// All levels, from the lowest.
-    pub const ALL: [Self; 3] = [Self::None, Self::Modest, Self::Coarse];
-
     /// Name of the level in the table.
     pub fn word(self) -> &'static str {
         match self {
@@ -82,27 +78,5 @@ impl NoiseLevel {
         job.plan.errors = self.errors(&job.plan.route);
         job.plan.seed = 0;
         job
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use raypencil_scene_io::{Overrides, load};
-
-    use super::*;
-
-    #[test]
-    fn noise_levels_are_plans_that_can_be_driven() {
-        let loaded = load("pyramids", &Overrides::default()).unwrap();
-        let job = DriveJob::new(&loaded, None, "pyramids".into()).unwrap();
-        for level in NoiseLevel::ALL {
-            let noisy = level.applied(job.clone());
-            noisy.plan.validate("drive").unwrap();
-            // 1 % of the distance at 0.3 m/s is 3 mm per second.
-            let drift = noisy.plan.errors.position_drift.length();
-            let expected = [0.0, 0.003, 0.012][level as usize];
-            assert!((drift - expected).abs() < 1e-15, "{}", level.word());
-        }
-        assert_eq!(NoiseLevel::None.applied(job.clone()).plan, job.plan);
     }
 }

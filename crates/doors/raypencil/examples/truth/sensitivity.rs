@@ -1,22 +1,9 @@
 //! Sensitivity of a stripe's points to errors, to first order. (Paper, §5)
 
 use glam::DVec3;
-use raypencil_rover::Rig;
+use raypencil::rover::Rig;
 
 /// Sensitivity of a point of a stripe to errors of the edge's row and of the vehicle's pitch.
-///
-/// ```
-/// use raypencil_drive::{DriveJob, StripeSensitivity};
-/// use raypencil_scene_io::{Overrides, load};
-///
-/// let rig = DriveJob::new(&load("pyramids", &Overrides::default())?, None, "pyramids".into())?.plan.rig;
-/// // Beam 0 of the default rig is 1.8 m up at x = 0.3 m and points 31 degrees down: 0.3 + 1.8 / tan 31 = 3.2957 m.
-/// let near = StripeSensitivity::on_level_ground(&rig, 0);
-/// assert!((near.ahead - 3.2957).abs() < 1e-4);
-/// // A pitch error of 0.1 degrees = 1.7453e-3 rad lowers the point by 3.2957 m times that.
-/// assert!((near.elevation_of_pitch(0.1_f64.to_radians()) - 5.752e-3).abs() < 1e-6);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StripeSensitivity {
     /// Distance of the point before the vehicle's origin, metres.
@@ -47,12 +34,6 @@ impl StripeSensitivity {
         let pixel = camera.pixel_pitch[1] / camera.focal_length * cos_off * cos_off;
         let range_per_pixel = d * d / (b * cos_a * cos_a) * pixel;
         Self { ahead, range_per_pixel, elevation_per_pixel: range_per_pixel * slope }
-    }
-
-    /// Sensitivity at the point where the plane of a beam meets level ground.
-    pub fn on_level_ground(rig: &Rig, beam: usize) -> Self {
-        let SideView { slope, source, .. } = SideView::of(rig, beam);
-        Self::at(rig, beam, source.x + source.z / slope)
     }
 
     /// Distance by which the point falls if the vehicle's estimated pitch is too far nose-down by `pitch` radians,
