@@ -5,7 +5,6 @@
 use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
-use raypencil::SensorId;
 use raypencil::io::{Limits, exr_from_bytes};
 
 fuzz_target!(|bytes: &[u8]| {
@@ -13,6 +12,5 @@ fuzz_target!(|bytes: &[u8]| {
     let limits = Limits { cells: 1 << 20, bytes: 1 << 25, size: None };
     if let Ok(map) = exr_from_bytes(bytes, file, &limits) {
         assert!(map.channels.values().all(|raster| raster.size() == (map.width, map.height)));
-        let _ = map.to_sensor_map(SensorId::Beam(0), file);
     }
 });

@@ -77,8 +77,8 @@ pub use channels::{
 };
 pub use error::{Fault, FileError, Problem, shortened};
 pub use exr::{
-    Attributes, ExrMap, ExrPart, Raster, exr_from_bytes, exr_parts_from_bytes, read_exr, read_exr_map,
-    read_exr_parts, write_exr, write_exr_map,
+    Attributes, ExrMap, ExrPart, Raster, exr_from_bytes, exr_parts_from_bytes, read_exr, read_exr_parts,
+    write_exr,
 };
 pub use folder::{FolderError, begin_output_folder, create_folder, write_texts};
 pub use growing_file::{GrowingFile, NpyRows};

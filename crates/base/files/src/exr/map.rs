@@ -4,8 +4,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use raypencil_scene::{Image, Maybe};
 
-use crate::error::Fault;
-
 /// One fixed quiet NaN for cells without a value, so that files have the same bytes everywhere.
 pub(super) const NO_VALUE: f32 = f32::from_bits(0x7fc0_0000);
 
@@ -104,30 +102,6 @@ impl ExrMap {
             let cells = convert(image, |cell| cell.get().map_or(nothing, |value| value as f32));
             self.insert(name, Raster::F32(cells));
         }
-    }
-
-    /// The real numbers of a channel; `None` without the channel.
-    pub(super) fn reals(&self, name: &str) -> Result<Option<&Image<f32>>, Fault> {
-        match self.channels.get(name) {
-            None => Ok(None),
-            Some(Raster::F32(image)) => Ok(Some(image)),
-            Some(Raster::U32(_)) => Err(Fault::new(channel(name), "of type U32", "F32 or F16")),
-        }
-    }
-
-    /// The whole numbers of a channel; `None` without the channel.
-    pub(super) fn wholes(&self, name: &str) -> Result<Option<&Image<u32>>, Fault> {
-        match self.channels.get(name) {
-            None => Ok(None),
-            Some(Raster::U32(image)) => Ok(Some(image)),
-            Some(Raster::F32(_)) => Err(Fault::new(channel(name), "of type F32 or F16", "U32")),
-        }
-    }
-
-    /// A scalar channel; cells that are not finite have no value. `None` without the channel.
-    pub(super) fn scalar(&self, name: &str) -> Result<Option<Image<Maybe<f64>>>, Fault> {
-        let cell = |value: f32| Maybe::from(value.is_finite().then_some(f64::from(value)));
-        Ok(self.reals(name)?.map(|image| convert(image, cell)))
     }
 }
 

@@ -11,5 +11,5 @@ mod write;
 pub(crate) use map::convert;
 pub use map::{ExrMap, Raster};
 pub use read::{ExrPart, exr_from_bytes, exr_parts_from_bytes, read_exr, read_exr_parts};
-pub use sensor_map::{Attributes, read_exr_map, write_exr_map};
+pub use sensor_map::Attributes;
 pub use write::write_exr;

@@ -1,11 +1,8 @@
-//! Returns of a beam's pencils and flux images as channels, and back.
-
-use std::path::Path;
+//! Returns of a beam's pencils and flux images as channels.
 
 use raypencil_scene::{FluxModel, Image, Maybe, Pixel, Returns, Sample};
 
-use crate::error::{Fault, FileError};
-use crate::exr::map::{ExrMap, NO_VALUE, Raster, channel, convert};
+use crate::exr::map::{ExrMap, NO_VALUE, Raster, convert};
 
 const VISIBLE: &str = "visible.V";
 
@@ -70,48 +67,6 @@ impl ExrMap {
         self.insert(format!("flux.beam{beam}"), Raster::F32(convert(image, |flux| flux as f32)));
         self.attributes.insert("fluxUnit".into(), format!("{} per pixel", unit(model)));
     }
-
-    /// Returns of a beam, from the channels that are present.
-    ///
-    /// # Errors
-    /// Names `file` and the channel that has the wrong type, or is absent while its sibling is present.
-    pub fn to_returns(&self, file: &Path) -> Result<Returns, FileError> {
-        self.returns().map_err(|fault| FileError::Exr(fault.in_file(file)))
-    }
-
-    fn returns(&self) -> Result<Returns, Fault> {
-        let mut returns = Returns::unsupported(self.width, self.height);
-        returns.visible = self.reals(VISIBLE)?.map(|image| convert(image, |cell| cell > 0.5));
-        returns.flux = self.reals(FLUX)?.map(|image| convert(image, f64::from));
-        returns.depth = self.scalar(VIEW_DEPTH)?;
-        returns.cos_off_axis = self.scalar(OFF_AXIS)?;
-        returns.cos_view = self.scalar(EMISSION)?;
-        returns.pixel = match [self.wholes(PIXEL[0])?, self.wholes(PIXEL[1])?] {
-            [Some(i), Some(j)] => {
-                let cells = i.cells().iter().zip(j.cells());
-                let cells = cells.map(|(&i, &j)| {
-                    Some(Pixel { i, j }).filter(|pixel| !pixel.is_nothing() && j != u32::MAX).into()
-                });
-                Some(Image::from_cells(self.width, self.height, cells.collect()))
-            }
-            [None, None] => None,
-            [i, _] => {
-                let absent = PIXEL[usize::from(i.is_some())];
-                return Err(Fault::new(channel(absent), "absent", format!("all of {}", PIXEL.join(", "))));
-            }
-        };
-        Ok(returns)
-    }
-
-    /// Flux of a beam on the camera's image; `None` without the channel.
-    ///
-    /// # Errors
-    /// Names `file` and the channel if it has the wrong type.
-    pub fn to_flux(&self, beam: usize, file: &Path) -> Result<Option<Image<f64>>, FileError> {
-        let image = self.reals(&format!("flux.beam{beam}"));
-        let image = image.map_err(|fault| FileError::Exr(fault.in_file(file)))?;
-        Ok(image.map(|image| convert(image, f64::from)))
-    }
 }
 
 #[cfg(test)]
@@ -119,28 +74,36 @@ mod tests {
     use super::*;
 
     #[test]
-    fn returns_come_back_as_they_were_written() {
-        let mut returns = Returns::empty(3, 2);
+    fn a_pencil_without_a_return_has_the_numbers_of_the_documentation() {
         let back = raypencil_scene::Return {
             visible: true,
             pixel: Some(Pixel { i: 7, j: 1023 }),
             depth: 2.0,
             cos_off_axis: 0.5,
-            cos_view: 0.5,
+            cos_view: 0.25,
             flux: 0.0078125,
         };
+        let mut returns = Returns::empty(3, 1);
         returns.put(1, 0, &back);
-        returns.put(2, 1, &raypencil_scene::Return { visible: false, pixel: None, flux: 0.0, ..back });
-        let mut map = ExrMap::new(3, 2);
+        returns.put(2, 0, &raypencil_scene::Return { visible: false, pixel: None, flux: 0.0, ..back });
+        let mut map = ExrMap::new(3, 1);
         map.insert_returns(&returns, FluxModel::Eq1);
-        assert_eq!(map.to_returns(Path::new("here")).unwrap(), returns);
+        // No point, a point that is seen, a point that is hidden.
+        let bits =
+            |name: &str| map.channels[name].as_f32().unwrap().cells().iter().map(|cell| cell.to_bits());
+        for (name, expected) in [
+            ("visible.V", [0.0, 1.0, 0.0]),
+            ("flux.V", [0.0, 0.0078125, 0.0]),
+            ("view.Z", [f32::INFINITY, 2.0, 2.0]),
+            ("offAxis.V", [NO_VALUE, 0.5, 0.5]),
+            ("emission.V", [NO_VALUE, 0.25, 0.25]),
+        ] {
+            assert!(bits(name).eq(expected.map(f32::to_bits)), "{name}");
+        }
+        let whole = |name: &str| map.channels[name].as_u32().unwrap().cells().to_vec();
+        assert_eq!(whole("pixel.I"), [u32::MAX, 7, u32::MAX]);
+        assert_eq!(whole("pixel.J"), [u32::MAX, 1023, u32::MAX]);
         assert!(map.attributes["returnUnit"].ends_with("W/m"));
-        map.channels.remove("pixel.I");
-        let error = map.to_returns(Path::new("here")).unwrap_err().to_string();
-        assert!(error.contains("pixel.I") && error.contains("here"), "{error}");
-        map.insert("pixel.J", Raster::F32(Image::filled(3, 2, 0.0)));
-        let error = map.to_returns(Path::new("here")).unwrap_err().to_string();
-        assert!(error.contains("pixel.J") && error.contains("U32"), "{error}");
     }
 
     #[test]
@@ -167,12 +130,11 @@ mod tests {
     }
 
     #[test]
-    fn flux_images_come_back_as_they_were_written() {
+    fn a_flux_image_has_the_name_of_its_beam_and_its_unit() {
         let mut map = ExrMap::new(2, 1);
-        let image = Image::from_cells(2, 1, vec![0.0, 0.25]);
-        map.insert_flux(1, &image, FluxModel::Radiometric);
-        assert_eq!(map.to_flux(1, Path::new("here")).unwrap(), Some(image));
-        assert_eq!(map.to_flux(0, Path::new("here")).unwrap(), None);
+        map.insert_flux(1, &Image::from_cells(2, 1, vec![0.0, 0.25]), FluxModel::Radiometric);
+        assert_eq!(map.channels.keys().collect::<Vec<_>>(), ["flux.beam1"]);
+        assert_eq!(map.channels["flux.beam1"].as_f32().unwrap().cells(), [0.0, 0.25]);
         assert_eq!(map.attributes["fluxUnit"], "W per pixel");
     }
 }

@@ -1,17 +1,9 @@
-//! Maps of one sensor as channels, and back. Names and units: `docs/formats/files.md`.
-
-use std::path::Path;
+//! Maps of one sensor as channels. Names and units: `docs/formats/files.md`.
 
 use glam::DVec3;
-use raypencil_scene::{
-    FaceId, HitQuantity, HitRaster, HitRasterMut, Image, Maybe, Quantities, Sample, SensorId, SensorMap,
-};
+use raypencil_scene::{HitQuantity, HitRaster, Image, Maybe, SensorId, SensorMap};
 
-use crate::error::{Fault, FileError};
-use crate::exr::map::{ExrMap, NO_VALUE, Raster, channel, convert};
-use crate::exr::read::read_exr;
-use crate::exr::write::write_exr;
-use crate::limits::Limits;
+use crate::exr::map::{ExrMap, NO_VALUE, Raster, convert};
 
 /// Face index of a cell without a hit.
 const NO_FACE: u32 = u32::MAX;
@@ -70,27 +62,6 @@ impl ExrMap {
         exr
     }
 
-    /// Maps of `sensor` from the channels that `docs/formats/files.md` lists; other channels are ignored.
-    ///
-    /// A cell whose value is not finite, or whose face is 4294967295, has no hit.
-    ///
-    /// # Errors
-    /// Names `file` and the channel that has the wrong type, or is absent while one of its two siblings is present.
-    pub fn to_sensor_map(&self, sensor: SensorId, file: &Path) -> Result<SensorMap, FileError> {
-        let in_file = |fault: Fault| FileError::Exr(fault.in_file(file));
-        let mut map = SensorMap::empty(sensor, self.width, self.height, Quantities::NONE);
-        for quantity in HitQuantity::ALL {
-            match map.raster_mut(quantity) {
-                HitRasterMut::Scalar(image) => {
-                    *image = self.scalar(quantity.channels()[0]).map_err(in_file)?;
-                }
-                HitRasterMut::Vector(image) => *image = self.vector(quantity.channels()).map_err(in_file)?,
-            }
-        }
-        map.face = faces(self).map_err(in_file)?;
-        Ok(map)
-    }
-
     /// Adds the three channels of a vector; cells without a value get NaN.
     fn insert_vector(&mut self, names: &[&str], image: &Image<Maybe<DVec3>>) {
         for (axis, name) in names.iter().enumerate() {
@@ -98,63 +69,4 @@ impl ExrMap {
             self.insert(*name, Raster::F32(cells));
         }
     }
-
-    /// A vector from its three channels; cells that are not finite have no value. `None` without any of them.
-    fn vector(&self, names: &[&str]) -> Result<Option<Image<Maybe<DVec3>>>, Fault> {
-        let parts = [self.reals(names[0])?, self.reals(names[1])?, self.reals(names[2])?];
-        let [Some(x), Some(y), Some(z)] = parts else {
-            return match (parts.iter().position(Option::is_some), parts.iter().position(Option::is_none)) {
-                (Some(_), Some(absent)) => {
-                    Err(Fault::new(channel(names[absent]), "absent", format!("all of {}", names.join(", "))))
-                }
-                _ => Ok(None),
-            };
-        };
-        let cells = x.cells().iter().zip(y.cells()).zip(z.cells()).map(|((&x, &y), &z)| {
-            let vector = DVec3::new(f64::from(x), f64::from(y), f64::from(z));
-            Maybe::from(vector.is_finite().then_some(vector))
-        });
-        Ok(Some(Image::from_cells(self.width, self.height, cells.collect())))
-    }
-}
-
-/// The face of every cell, if there is a channel of faces.
-fn faces(map: &ExrMap) -> Result<Option<Image<Maybe<FaceId>>>, Fault> {
-    match map.channels.get(FACE) {
-        None => Ok(None),
-        Some(Raster::U32(image)) => {
-            let cell = |index: u32| Some(FaceId(index)).filter(|face| !face.is_nothing()).into();
-            Ok(Some(convert(image, cell)))
-        }
-        Some(Raster::F32(_)) => Err(Fault::new(channel(FACE), "of type F32 or F16", "U32")),
-    }
-}
-
-/// Writes the quantities that the maps of one sensor have, in the channels that `docs/formats/files.md` lists.
-///
-/// The file is replaced as a whole. The same maps give the same bytes on any machine.
-///
-/// # Errors
-/// Maps without a quantity, attributes that are not Latin-1, or an error of the file system, with the path.
-pub fn write_exr_map(
-    path: impl AsRef<Path>,
-    map: &SensorMap,
-    attributes: &Attributes,
-) -> Result<(), FileError> {
-    write_exr(path, &ExrMap::from_sensor_map(map, attributes))
-}
-
-/// Reads maps that [`write_exr_map`], or another program under the same channel names, wrote.
-///
-/// The values are those of the file, widened from `f32`.
-///
-/// # Errors
-/// As [`read_exr`] and [`ExrMap::to_sensor_map`].
-pub fn read_exr_map(
-    path: impl AsRef<Path>,
-    sensor: SensorId,
-    limits: &Limits,
-) -> Result<SensorMap, FileError> {
-    let path = path.as_ref();
-    read_exr(path, limits)?.to_sensor_map(sensor, path)
 }
