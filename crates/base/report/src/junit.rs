@@ -53,23 +53,17 @@ impl JunitReport {
     }
 }
 
-/// A suite: cases that belong together, and properties of them all.
+/// A suite: cases that belong together.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct JunitSuite {
     name: String,
-    properties: Vec<(String, String)>,
     cases: Vec<JunitCase>,
 }
 
 impl JunitSuite {
     /// A suite without cases.
     pub fn new(name: impl Into<String>) -> Self {
-        Self { name: name.into(), properties: Vec::new(), cases: Vec::new() }
-    }
-
-    /// Adds a property, such as the digest of a scene.
-    pub fn property(&mut self, name: impl Into<String>, value: impl Into<String>) {
-        self.properties.push((name.into(), value.into()));
+        Self { name: name.into(), cases: Vec::new() }
     }
 
     /// Adds a case after the others.
@@ -79,9 +73,6 @@ impl JunitSuite {
 
     fn to_test_suite(&self) -> TestSuite {
         let mut suite = TestSuite::new(allowed(&self.name));
-        for (name, value) in &self.properties {
-            suite.add_property((allowed(name), allowed(value)));
-        }
         suite.add_test_cases(self.cases.iter().map(JunitCase::to_test_case));
         suite
     }

@@ -147,8 +147,6 @@ impl PointField {
     pub const INT32: u8 = 5;
     /// Real number of four bytes.
     pub const FLOAT32: u8 = 7;
-    /// Real number of eight bytes.
-    pub const FLOAT64: u8 = 8;
 }
 
 /// `sensor_msgs/msg/PointCloud2`.

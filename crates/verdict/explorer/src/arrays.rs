@@ -120,16 +120,6 @@ impl Arrays {
         self.add_beside(Kind::F32, values.iter().map(|value| value.to_bits()).collect(), other)
     }
 
-    /// Number of bytes of all arrays before they are deflated.
-    pub fn len(&self) -> usize {
-        self.bytes.iter().map(Vec::len).sum()
-    }
-
-    /// Whether there is no array.
-    pub fn is_empty(&self) -> bool {
-        self.bytes.is_empty()
-    }
-
     /// The arrays as elements of a page, each on a line.
     pub fn scripts(&self) -> String {
         let texts: Vec<String> = self

@@ -1,11 +1,8 @@
 //! All answers to the rays of a scene: of a renderer or recording, or of the referee, correctly rounded.
 
-use std::time::Instant;
-
 use raypencil_referee::{CertifiedMap, CertifiedReturns, Format, Referee};
 use raypencil_scene::{
     FluxModel, Image, Progress, Quantities, RenderOutput, Returns, Sampling, Scene, SensorId, SensorMap,
-    Stage,
 };
 
 /// Answers to all rays of a scene. Every quantity is optional.
@@ -89,33 +86,22 @@ impl Answers {
 pub struct Certified {
     maps: Vec<CertifiedMap>,
     light: Vec<CertifiedReturns>,
-    /// Time that each sensor took.
-    pub stages: Vec<Stage>,
 }
 
 impl Certified {
     /// Asks the referee about every ray.
     pub fn new(scene: &Scene, progress: &dyn Progress) -> Self {
-        let mut stages = Vec::new();
-        let mut start = Instant::now();
-        let mut done = |name: &str| {
-            stages.push(Stage { name: format!("certified: {name}"), time: start.elapsed() });
-            start = Instant::now();
-        };
         let referee = Referee::new(scene);
-        done("tree");
         let (mut maps, mut light) = (Vec::new(), Vec::new());
         for sensor in scene.sensors() {
             progress.stage(&format!("{sensor}: exact values"));
             maps.extend(referee.certified_map(sensor, Sampling::Centres));
-            done(&sensor.to_string());
         }
         for beam in 0..scene.beams().len() {
             progress.stage(&format!("{}: exact flux", SensorId::Beam(beam)));
             light.extend(referee.certified_returns(beam, Sampling::Centres));
-            done(&format!("{} light", SensorId::Beam(beam)));
         }
-        Self { maps, light, stages }
+        Self { maps, light }
     }
 
     /// The answers in one format, the flux of the returns by `model`.

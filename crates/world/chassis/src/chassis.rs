@@ -1,7 +1,5 @@
 //! The dimensions of the vehicle.
 
-use raypencil_scene::{SceneError, check_range};
-
 /// Dimensions of a vehicle on four equal wheels.
 ///
 /// The vehicle frame has x forward, y left, z up. Its origin lies in the plane of the wheels' lowest points, midway
@@ -28,32 +26,5 @@ impl Default for Chassis {
     /// of the hubs.
     fn default() -> Self {
         Self { wheelbase: 1.2, track: 1.0, wheel_radius: 0.35, wheel_width: 0.25, clearance: 0.35 }
-    }
-}
-
-impl Chassis {
-    /// Checks every field. Front and rear wheels must not overlap, nor must left and right ones.
-    ///
-    /// # Errors
-    /// Names the first field that is out of range.
-    pub fn validate(&self, field: &str) -> Result<(), SceneError> {
-        for (name, length) in [
-            ("wheelbase", self.wheelbase),
-            ("track", self.track),
-            ("wheel_radius", self.wheel_radius),
-            ("wheel_width", self.wheel_width),
-            ("clearance", self.clearance),
-        ] {
-            check_range(|| format!("{field}.{name}"), length, 1e-2, 1e2, "m")?;
-        }
-        let half_wheelbase = 0.5 * self.wheelbase;
-        check_range(
-            || format!("{field}.wheel_radius"),
-            self.wheel_radius,
-            1e-2,
-            half_wheelbase,
-            "m (half the wheelbase)",
-        )?;
-        check_range(|| format!("{field}.wheel_width"), self.wheel_width, 1e-2, self.track, "m (the track)")
     }
 }

@@ -1,7 +1,6 @@
 //! What the vehicle can pass.
 
 use glam::{DVec2, DVec3};
-use raypencil_scene::{SceneError, check_range};
 
 use crate::belly::{Plane, highest_excess};
 use crate::chassis::{Chassis, WHEEL_SIGNS};
@@ -22,19 +21,6 @@ pub struct PassageLimits {
     pub rear: f64,
     /// Between the middle of the front wheels and that of the rear ones, over the wheelbase.
     pub length: f64,
-}
-
-impl PassageLimits {
-    /// Checks every field.
-    ///
-    /// # Errors
-    /// Names the first slope that is not within 0 to 1000.
-    pub fn validate(&self, field: &str) -> Result<(), SceneError> {
-        for (name, slope) in [("front", self.front), ("rear", self.rear), ("length", self.length)] {
-            check_range(|| format!("{field}.{name}"), slope, 0.0, 1e3, "(rise over distance)")?;
-        }
-        Ok(())
-    }
 }
 
 /// Whether the vehicle can stand at a place.

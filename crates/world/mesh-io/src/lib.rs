@@ -68,10 +68,10 @@ pub use dem::{
 pub use file_facts::{FileFacts, FileUnits};
 pub use file_frame::{FileFrame, SCALE_RANGE, UpAxis};
 pub use gltf::{
-    DEFAULT_REFLECTIVITY, MAX_BUFFER_FILES_BYTES, Vertices, glb_bytes, load_mesh, mesh_from_bytes,
-    mesh_of_offsets, write_glb, write_terrain_glb,
+    DEFAULT_REFLECTIVITY, MAX_BUFFER_FILES_BYTES, Vertices, glb_bytes, load_mesh, mesh_from_bytes, write_glb,
+    write_terrain_glb,
 };
-pub use terrain::{TerrainFile, load_terrain, read_dem_terrain, read_terrain, terrain_from_bytes};
+pub use terrain::{TerrainFile, read_dem_terrain, read_terrain, terrain_from_bytes};
 pub use triangles::{
     BentPolygons, CrossingPolygons, PolygonFacts, PolygonPlace, TriangleFile, load_triangles, read_triangles,
     triangles_from_bytes,

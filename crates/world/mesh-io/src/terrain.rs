@@ -12,7 +12,8 @@ use crate::file_frame::{FileFrame, UpAxis};
 use crate::gltf::{self, MAX_FACES_OR_VERTICES, WITHOUT_MATERIAL};
 use crate::triangles::{Format, PolygonFacts, TriangleFile, format, parse, read_bytes};
 
-/// Loads a terrain: a GLB, glTF, STL, OBJ or PLY file.
+/// Loads a terrain: a GLB, glTF, STL, OBJ or PLY file. Beside the mesh are the digests of its files and what they say of
+/// themselves.
 ///
 /// glTF is read as [`crate::load_mesh`] reads it. The faces of the other formats are those of [`crate::load_triangles`]: all
 /// of them, also without area or twice, in the order of the file; their material is one of the given reflectivity. Each
@@ -24,19 +25,19 @@ use crate::triangles::{Format, PolygonFacts, TriangleFile, format, parse, read_b
 /// As [`crate::load_mesh`] and [`crate::load_triangles`]; a file without faces; a mesh beyond a limit.
 ///
 /// ```
-/// use raypencil_mesh_io::{FileFrame, UpAxis, load_terrain};
+/// use raypencil_mesh_io::{FileFrame, UpAxis, read_terrain};
 ///
 /// let folder = tempfile::tempdir()?;
 /// let path = folder.path().join("floor.obj");
 /// // A floor of 1 m in millimetres, y up.
 /// std::fs::write(&path, "v 0 0 0\nv 0 0 1000\nv 1000 0 0\nf 1 2 3\n")?;
-/// let mesh = load_terrain(&path, 0.3, &FileFrame { up: Some(UpAxis::Y), scale: 0.001 })?;
+/// let mesh = read_terrain(&path, 0.3, &FileFrame { up: Some(UpAxis::Y), scale: 0.001 })?.mesh;
 /// assert_eq!(mesh.vertices(), [[0.0, 0.0, 0.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]]);
 /// assert_eq!(mesh.materials()[0].reflectivity, 0.3);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn load_terrain(path: impl AsRef<Path>, reflectivity: f64, frame: &FileFrame) -> Result<Mesh, FileError> {
-    Ok(read_terrain(path.as_ref(), reflectivity, frame)?.mesh)
+pub fn read_terrain(path: &Path, reflectivity: f64, frame: &FileFrame) -> Result<TerrainFile, FileError> {
+    terrain_of_bytes(&read_bytes(path)?, path, reflectivity, frame)
 }
 
 /// Terrain of a file, and what ties it to the file.
@@ -48,14 +49,6 @@ pub struct TerrainFile {
     pub digests: Vec<Sha256Digest>,
     /// What was found out about the file beside its faces.
     pub facts: FileFacts,
-}
-
-/// Loads a terrain as [`load_terrain`] does, with the digests of its files and what they say of themselves.
-///
-/// # Errors
-/// As [`load_terrain`].
-pub fn read_terrain(path: &Path, reflectivity: f64, frame: &FileFrame) -> Result<TerrainFile, FileError> {
-    terrain_of_bytes(&read_bytes(path)?, path, reflectivity, frame)
 }
 
 /// Terrain of an elevation model, or of its part inside a window, with the digest of the whole file.
@@ -74,11 +67,11 @@ pub fn read_dem_terrain(
     Ok(TerrainFile { mesh, digests: vec![sha], facts: dem.facts().into() })
 }
 
-/// Terrain from the bytes of a file, as [`load_terrain`] reads it; `file` is its name in messages, and its ending tells the
+/// Terrain from the bytes of a file, as [`read_terrain`] reads it; `file` is its name in messages, and its ending tells the
 /// format where the bytes do not.
 ///
 /// # Errors
-/// As [`load_terrain`].
+/// As [`read_terrain`].
 pub fn terrain_from_bytes(
     bytes: &[u8],
     file: &Path,

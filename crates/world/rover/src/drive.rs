@@ -195,11 +195,6 @@ impl Drive {
         self.mapper.as_deref()
     }
 
-    /// Plan of the drive.
-    pub fn plan(&self) -> &DrivePlan {
-        &self.plan
-    }
-
     /// Heights of the true ground.
     pub fn ground(&self) -> &Arc<HeightIndex> {
         &self.true_vehicle.heights

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use raypencil_scene::Pose;
 
 use crate::elevation_estimate::{Estimate, fitted_ground};
-use crate::elevation_map::{ElevationMap, ElevationSource, GridPoint, Inconsistency, MapSize, Sight};
+use crate::elevation_map::{ElevationMap, GridPoint, Inconsistency, MapSize, Sight};
 use crate::localisation::LocalisationReading;
 use crate::map_update::{MapPoint, flatter};
 use crate::registration::elevation_error;
@@ -106,11 +106,6 @@ impl Mapper {
     /// Estimate of `global_from_vehicle`.
     pub fn pose(&self) -> Pose {
         self.pose
-    }
-
-    /// The vehicle.
-    pub fn vehicle(&self) -> &Vehicle {
-        &self.vehicle
     }
 
     /// Updates the map with one frame: a reading of the sensors, and the points of all stripes (vehicle frame, metres).
@@ -289,10 +284,5 @@ impl Mapper {
             }
         }
         around
-    }
-
-    /// Number of grid points with a known elevation.
-    pub fn known_count(&self) -> usize {
-        self.map.points().filter(|&point| self.map.source(point) != ElevationSource::Unknown).count()
     }
 }

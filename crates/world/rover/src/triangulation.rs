@@ -127,12 +127,6 @@ impl Triangulation {
         Some(largest)
     }
 
-    /// Points of a stripe's edges at their measured rows, in the order of the edges: vehicle frame, metres. Edges
-    /// without a point are left out.
-    pub fn points(&self, edges: &[EdgePoint]) -> Vec<DVec3> {
-        edges.iter().filter_map(|edge| self.at_edge(edge)).collect()
-    }
-
     /// Point of one edge at its measured row: vehicle frame, metres.
     pub fn at_edge(&self, edge: &EdgePoint) -> Option<DVec3> {
         self.at(f64::from(edge.i) + 0.5, edge.row)
@@ -177,11 +171,5 @@ impl TriangulationTable {
     /// Point seen by the middle of pixel (i, j), in the vehicle frame, metres.
     pub fn at_pixel(&self, i: u32, j: u32) -> Option<DVec3> {
         self.points.at(i, j).get()
-    }
-
-    /// Points of a stripe's edge pixels, in the order of the edges: vehicle frame, metres. Edges without a point are
-    /// left out.
-    pub fn points(&self, edges: &[EdgePoint]) -> Vec<DVec3> {
-        edges.iter().filter_map(|edge| self.at_pixel(edge.i, edge.j)).collect()
     }
 }

@@ -72,16 +72,6 @@ impl Setting {
         Ok(setting)
     }
 
-    /// The key.
-    pub fn key(&self) -> &str {
-        &self.key
-    }
-
-    /// The value, as it was given.
-    pub fn value(&self) -> &str {
-        &self.value
-    }
-
     fn parts(&self) -> Vec<&str> {
         self.key.split('.').collect()
     }

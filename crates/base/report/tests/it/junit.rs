@@ -1,11 +1,10 @@
-//! JUnit documents: counts, outcomes, properties, characters that XML forbids.
+//! JUnit documents: counts, outcomes, characters that XML forbids.
 
 use raypencil_report::{JunitCase, JunitReport, JunitSuite};
 
 #[test]
 fn a_document_has_its_suites_cases_and_counts() {
     let mut suite = JunitSuite::new("yard: a against b");
-    suite.property("scene", "0123abcd");
     suite.push(JunitCase::passed("range").with_class("yard.a-b.camera"));
     suite.push(JunitCase::skipped("flux", "not compared"));
     suite.push(JunitCase::skipped("depth", "only in A").with_kind("missing"));
@@ -16,9 +15,6 @@ fn a_document_has_its_suites_cases_and_counts() {
     let expected = r#"<?xml version="1.0" encoding="UTF-8"?>
 <testsuites name="raypencil check" tests="5" skipped="2" failures="2" errors="0">
     <testsuite name="yard: a against b" tests="5" skipped="2" errors="0" failures="2">
-        <properties>
-            <property name="scene" value="0123abcd"/>
-        </properties>
         <testcase name="range" classname="yard.a-b.camera"/>
         <testcase name="flux">
             <skipped message="not compared"/>

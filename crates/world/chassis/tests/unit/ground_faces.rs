@@ -42,8 +42,8 @@ fn two_huge_faces_and_many_tiny_ones_take_no_more_memory_and_no_longer_search() 
     // Around the middle, where f32 tells millimetres apart.
     let mesh = mesh(vertices, faces);
     let ground = GroundFaces::new(&mesh);
-    assert_eq!(ground.len(), 50_002);
-    assert!(ground.boxes.len() <= ground.len());
+    assert_eq!(ground.faces.len(), 50_002);
+    assert!(ground.boxes.len() <= ground.faces.len());
     let forward = DVec2::X;
     let place = DVec2::new(100.0, 0.0);
     let rectangle = Rectangle { place, offset: DVec2::ZERO, forward, half_length: 0.35, half_width: 0.125 };
@@ -55,12 +55,12 @@ fn two_huge_faces_and_many_tiny_ones_take_no_more_memory_and_no_longer_search() 
 
 #[test]
 fn every_number_of_faces_has_at_most_as_many_boxes_and_each_face_once() {
-    assert!(GroundFaces::new(&mesh(vec![DVec3::ZERO], vec![])).is_empty());
+    assert!(GroundFaces::new(&mesh(vec![DVec3::ZERO], vec![])).faces.is_empty());
     for count in 1..100_u32 {
         // All in one place: halving by position alone would never end.
         let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
         let ground = GroundFaces::new(&mesh(corners, vec![[0, 1, 2]; count as usize]));
-        assert!(ground.boxes.len() <= ground.len());
+        assert!(ground.boxes.len() <= ground.faces.len());
         let (place, offset, forward) = (DVec2::splat(0.1), DVec2::ZERO, DVec2::X);
         let rectangle = Rectangle { place, offset, forward, half_length: 0.01, half_width: 0.01 };
         let mut shown = Shown::default();

@@ -26,5 +26,5 @@ pub(crate) use exact::exact_triangles;
 pub use limits::MAX_BUFFER_FILES_BYTES;
 pub(crate) use limits::MAX_FACES_OR_VERTICES;
 pub(crate) use read::terrain_from_bytes;
-pub use read::{DEFAULT_REFLECTIVITY, Vertices, load_mesh, mesh_from_bytes, mesh_of_offsets, read_mesh};
+pub use read::{DEFAULT_REFLECTIVITY, Vertices, load_mesh, mesh_from_bytes, read_mesh};
 pub use write::{glb_bytes, write_glb, write_terrain_glb};

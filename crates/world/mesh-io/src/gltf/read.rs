@@ -74,22 +74,13 @@ pub(crate) fn terrain_from_bytes(
     Ok((mesh, std::iter::once(sha256(bytes)).chain(external).collect()))
 }
 
-/// Loads a `.glb` or `.gltf` file whose vertices are offsets, metres, from `origin` in the global frame.
-///
-/// It inverts [`crate::write_glb`] bit for bit, including the signs of zeros.
-///
-/// # Errors
-/// As [`load_mesh`].
-pub fn mesh_of_offsets(path: impl AsRef<Path>, origin: DVec3) -> Result<Mesh, FileError> {
-    Ok(read_mesh(path.as_ref(), DEFAULT_REFLECTIVITY, Vertices::OffsetsFrom(origin))?.0)
-}
-
 /// Meaning of the vertices of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Vertices {
     /// Positions in the global frame; the scene origin follows from them.
     Global,
-    /// Offsets from this scene origin; they are not changed.
+    /// Offsets from this scene origin, metres; they are not changed, so that [`crate::write_glb`] is inverted bit for bit,
+    /// including the signs of zeros.
     OffsetsFrom(DVec3),
 }
 

@@ -28,7 +28,7 @@ const UNSIGNED_INT: u32 = 5_125;
 ///
 /// ```
 /// use glam::DVec3;
-/// use raypencil_mesh_io::{mesh_of_offsets, write_glb};
+/// use raypencil_mesh_io::gltf::{DEFAULT_REFLECTIVITY, Vertices, read_mesh, write_glb};
 /// use raypencil_scene::{Material, Mesh};
 ///
 /// // Vertices as offsets from the scene origin; the file holds just these numbers.
@@ -39,7 +39,7 @@ const UNSIGNED_INT: u32 = 5_125;
 /// let folder = tempfile::tempdir()?;
 /// let path = folder.path().join("offsets.glb");
 /// write_glb(&path, &mesh)?;
-/// assert_eq!(mesh_of_offsets(&path, origin)?, mesh);
+/// assert_eq!(read_mesh(&path, DEFAULT_REFLECTIVITY, Vertices::OffsetsFrom(origin))?.0, mesh);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn write_glb(path: impl AsRef<Path>, mesh: &Mesh) -> Result<(), FileError> {
@@ -110,7 +110,7 @@ fn check(mesh: &Mesh) -> Result<(), Fault> {
 ///
 /// The vertices are the mesh's own `f32` offsets from its origin, metres, in the axes of glTF (y up): scene (x, y, z)
 /// becomes (x, z, -y). No node has a transform. `asset.extras.originM` has the origin, metres in the global frame.
-/// [`crate::mesh_of_offsets`] is given the origin and returns the same mesh bit for bit; [`crate::load_mesh`] takes the
+/// [`crate::gltf::read_mesh`] is given the origin and returns the same mesh bit for bit; [`crate::load_mesh`] takes the
 /// vertices for global ones.
 ///
 /// All faces refer to one list of vertices. Each run of faces of one material is a primitive, so that the faces have

@@ -5,8 +5,8 @@ use std::path::Path;
 use glam::DVec3;
 use raypencil_files::sha256;
 use raypencil_mesh_io::{
-    DEFAULT_REFLECTIVITY, FileFrame, FileUnits, UpAxis, glb_bytes, load_mesh, load_terrain, read_terrain,
-    read_triangles, terrain_from_bytes, write_terrain_glb,
+    DEFAULT_REFLECTIVITY, FileFrame, FileUnits, UpAxis, glb_bytes, load_mesh, read_terrain, read_triangles,
+    terrain_from_bytes, write_terrain_glb,
 };
 use raypencil_scene::{Material, Mesh};
 
@@ -118,17 +118,17 @@ fn the_stated_origin_of_a_written_file_goes_with_its_turn_and_scale() {
     write_terrain_glb(&path, &mesh, &serde_json::json!({})).unwrap();
     // y up and metres are what the file is in: nothing changes, to the bit.
     for frame in [FileFrame::default(), up(UpAxis::Y)] {
-        assert_eq!(load_terrain(&path, DEFAULT_REFLECTIVITY, &frame).unwrap(), mesh);
+        assert_eq!(read_terrain(&path, DEFAULT_REFLECTIVITY, &frame).unwrap().mesh, mesh);
     }
     assert_eq!(load_mesh(&path).unwrap(), mesh);
     let global = |mesh: &Mesh| {
         let place = |vertex: &[f32; 3]| (DVec3::from(vertex.map(f64::from)) + mesh.origin()).to_array();
         mesh.vertices().iter().map(place).collect::<Vec<_>>()
     };
-    let doubled = load_terrain(&path, 0.25, &FileFrame { up: None, scale: 2.0 }).unwrap();
+    let doubled = read_terrain(&path, 0.25, &FileFrame { up: None, scale: 2.0 }).unwrap().mesh;
     assert_eq!(global(&doubled), corners.map(|corner| (2.0 * corner).to_array()));
     // As the file has them: (x, z, -y).
-    let unturned = load_terrain(&path, 0.25, &up(UpAxis::Z)).unwrap();
+    let unturned = read_terrain(&path, 0.25, &up(UpAxis::Z)).unwrap().mesh;
     assert_eq!(global(&unturned), corners.map(|c| [c.x, c.z, -c.y]));
 }
 
