@@ -339,8 +339,7 @@ fn whole(all: &CampaignTotal<'_>) -> JunitSuite {
 
 /// Test results: a suite for each kind of scene, a case for each terrain.
 fn suite(merged: &Merged, name: PartName) -> JunitSuite {
-    let mut suite = JunitSuite::new(format!("campaign: {}", name.word()));
-    suite.property("seed", merged.campaign.seed.to_string());
+    let mut suite = JunitSuite::new(format!("campaign of seed {}: {}", merged.campaign.seed, name.word()));
     let parts = merged.terrains.iter().flat_map(|terrain| {
         terrain.parts.iter().filter(|part| part.part == name).map(move |part| (terrain.terrain, part))
     });

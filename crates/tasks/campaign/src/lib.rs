@@ -33,6 +33,7 @@ mod candidate;
 pub mod cases;
 mod document;
 mod error;
+mod folder;
 mod merge;
 mod own_scenes;
 mod plan;
@@ -48,13 +49,13 @@ mod totals;
 
 pub use document::campaign_document;
 pub use error::CampaignError;
+pub use folder::write_campaign;
 pub use merge::{Merged, merge};
 pub use own_scenes::OwnScenes;
 pub use plan::{Campaign, MAX_SHARDS, MAX_TERRAINS, Shard};
 pub use record::{PartName, PartRecord, QuantityRecord, TerrainRecord, WorstRecord, WrongRay};
 pub use scenes::scene_of;
 pub use shard::{CampaignProgress, has_result, run_shard};
-pub use summary::write_campaign;
 pub use terrain::terrain;
 
 #[cfg(doctest)]

@@ -1,13 +1,10 @@
 //! `summary.json`: a campaign for programs. Nothing in it depends on time or machine.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
 
-use raypencil_files::{FileError, FolderError, write_texts};
 use raypencil_judge::{COMPARE_CLASSES, class_counts_json};
 use serde_json::{Map, Value, json};
 
-use crate::document::campaign_document;
 use crate::merge::Merged;
 use crate::record::{PartName, probe_arguments};
 use crate::totals::{CampaignTotal, WorstRay, wrong_rays};
@@ -85,18 +82,4 @@ pub(crate) fn campaign_data(merged: &Merged) -> Map<String, Value> {
         Value::Object(keys) => keys,
         _ => Map::new(),
     }
-}
-
-/// Writes `report.html`, `junit.xml`, `summary.md`, and last `summary.json`, into a folder. Returns the path of the summary.
-///
-/// # Errors
-/// Names the file or folder that could not be written, and why.
-pub fn write_campaign(merged: &Merged, folder: &Path) -> Result<PathBuf, FolderError> {
-    const DATA: &str = "summary.json";
-    let texts = campaign_document(merged, |path| folder.join(path).is_file()).files(DATA);
-    write_texts(
-        folder,
-        &texts.map_err(|(name, source)| FileError::io(&folder.join(name), "write", source))?,
-    )?;
-    Ok(folder.join(DATA))
 }

@@ -61,6 +61,31 @@ pub fn drive_document(job: &DriveJob, run: &DriveRun) -> Document {
     }
 }
 
+/// Summary of a drive as JSON text. The keys tell the units.
+///
+/// ```
+/// use raypencil_drive::{DriveJob, drive, drive_json};
+/// use raypencil_scanline::Scanline;
+/// use raypencil_scene::Silent;
+/// use raypencil_scene_io::load_text;
+///
+/// let scene = "version = 1
+///     camera = { width_px = 96, height_px = 96, pixel_pitch_um = 96 }
+///     beam = [{ rows = 2 }]
+///     terrain = { builtin = 'pyramids' }
+///     drive = { waypoints_m = [[0.2, 0]], frames_per_s = 3, scans = false }";
+/// let job = DriveJob::new(&load_text(scene, "small")?, None, "small.toml".into())?;
+/// let run = drive(&job, &[&Scanline::default()], &Silent)?;
+/// let summary: serde_json::Value = serde_json::from_str(&drive_json(&job, &run))?;
+/// // 0.2 m at 0.3 m/s take 2/3 s: 3 frames at 3 per second. With one renderer there is nothing to differ from.
+/// assert_eq!(summary["frames"], 3);
+/// assert_eq!(summary["differences"], serde_json::Value::Null);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
+    drive_document(job, run).json()
+}
+
 /// The same with the figures of its page, the bytes of the animation (APNG), and the part that answers when asked.
 pub(crate) fn drive_document_with_pictures(
     job: &DriveJob,

@@ -77,7 +77,7 @@ mod through_optics;
 mod warnings;
 
 pub use differences::{Differences, FluxDifferences, StageDifferences};
-pub use document::drive_document;
+pub use document::{drive_document, drive_json};
 pub use error::DriveError;
 pub use folder::{WrittenDrive, write_drive};
 pub use job::DriveJob;
@@ -91,7 +91,6 @@ pub use recording::RecordContents;
 pub use run::{DriveExtras, DriveProgress, DriveRun, drive, drive_with};
 pub use sector_truth::{Missed, NotFound, SectorTruth};
 pub use stripe_file::StripeFile;
-pub use summary::drive_json;
 pub use through_optics::ThroughOptics;
 
 /// The README's example, compiled.

@@ -5,36 +5,10 @@ use serde_json::{Map, Value, json};
 
 use crate::counts::{CellCounts, scans, sector_counts};
 use crate::differences::{Differences, StageDifferences};
-use crate::document::drive_document;
 use crate::job::DriveJob;
 use crate::labels::label_word;
 use crate::run::DriveRun;
 use crate::sector_truth::SectorTruth;
-
-/// Summary of a drive as JSON text. The keys tell the units.
-///
-/// ```
-/// use raypencil_drive::{DriveJob, drive, drive_json};
-/// use raypencil_scanline::Scanline;
-/// use raypencil_scene::Silent;
-/// use raypencil_scene_io::load_text;
-///
-/// let scene = "version = 1
-///     camera = { width_px = 96, height_px = 96, pixel_pitch_um = 96 }
-///     beam = [{ rows = 2 }]
-///     terrain = { builtin = 'pyramids' }
-///     drive = { waypoints_m = [[0.2, 0]], frames_per_s = 3, scans = false }";
-/// let job = DriveJob::new(&load_text(scene, "small")?, None, "small.toml".into())?;
-/// let run = drive(&job, &[&Scanline::default()], &Silent)?;
-/// let summary: serde_json::Value = serde_json::from_str(&drive_json(&job, &run))?;
-/// // 0.2 m at 0.3 m/s take 2/3 s: 3 frames at 3 per second. With one renderer there is nothing to differ from.
-/// assert_eq!(summary["frames"], 3);
-/// assert_eq!(summary["differences"], serde_json::Value::Null);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn drive_json(job: &DriveJob, run: &DriveRun) -> String {
-    drive_document(job, run).json()
-}
 
 /// The keys of the summary.
 pub(crate) fn drive_data(job: &DriveJob, run: &DriveRun) -> Map<String, Value> {

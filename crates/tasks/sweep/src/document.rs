@@ -1,13 +1,15 @@
 //! A finished sweep as the document that every report prints.
 
+use std::path::PathBuf;
+
 use raypencil_report::{
     Block, Column, Document, Grid, JunitCase, JunitSuite, Outcome as Verdict, Room, counted, escaped, number,
 };
 use serde_json::{Map, Value, json};
 
-use crate::files::{Written, main_results};
 use crate::plan::Sweep;
 use crate::record::Outcome;
+use crate::results::main_results;
 use crate::run::Finished;
 use crate::table::{Cells, Column as TableColumn, SweepTable};
 use crate::work::arguments;
@@ -23,6 +25,15 @@ const MAX_RUNS_ON_PAGE: usize = 500;
 
 /// Maximum number of refused runs that are told with their reason.
 const MAX_REFUSED: usize = 5;
+
+/// Files of a sweep.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Written {
+    /// The table as CSV and as Parquet.
+    pub tables: [PathBuf; 2],
+    /// Each chart as SVG and as PNG.
+    pub charts: Vec<PathBuf>,
+}
 
 /// A chart of a page.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,30 +1,16 @@
 //! A finished sweep as files.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use raypencil_files::{FileError, create_folder, write_atomically, write_texts};
 
 use crate::chart::Chart;
-use crate::document::{Drawn, sweep_document};
+use crate::document::{Drawn, Written, sweep_document};
 use crate::error::SweepError;
 use crate::plan::Task;
+use crate::results::main_results;
 use crate::run::Finished;
 use crate::table::SweepTable;
-
-/// Results that a screen and the default charts show.
-pub(crate) fn main_results(task: Task) -> &'static [&'static str] {
-    match task {
-        Task::Validate => &["compared", "tie", "rounding", "approximation", "undecided", "defects"],
-        Task::Render => &["camera.hits", "beam-0.visible_share", "beam-0.lit_pixels", "beam-0.flux_w"],
-        Task::Drive => &[
-            "truth.found_share",
-            "truth.missed_share",
-            "truth.false_share",
-            "truth.clear_way_mean_m",
-            "driven_m",
-        ],
-    }
-}
 
 /// The charts that are drawn without being asked for: the main results against each parameter that has several numbers.
 pub fn default_charts(table: &SweepTable, task: Task) -> Vec<Chart> {
@@ -54,15 +40,6 @@ pub fn default_charts(table: &SweepTable, task: Task) -> Vec<Chart> {
         }
     }
     charts
-}
-
-/// Files of a sweep.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Written {
-    /// The table as CSV and as Parquet.
-    pub tables: [PathBuf; 2],
-    /// Each chart as SVG and as PNG.
-    pub charts: Vec<PathBuf>,
 }
 
 /// Name of what is printed for programs; it is not written.

@@ -35,9 +35,9 @@ mod work;
 
 pub use axis::Axis;
 pub use chart::Chart;
-pub use document::{Drawn, sweep_document};
+pub use document::{Drawn, Written, sweep_document};
 pub use error::SweepError;
-pub use files::{Written, default_charts, write_sweep};
+pub use files::{default_charts, write_sweep};
 pub use plan::{MAX_RUNS, Part, Sweep, Task};
 pub use record::Outcome;
 pub use results::Named;

@@ -5,6 +5,8 @@ use raypencil_scene::{FluxModel, RenderOutput, SensorId};
 use raypencil_survey::SensorHits;
 use serde_json::{Value, json};
 
+use crate::plan::Task;
+
 /// A result and its name.
 pub type Named = (String, Value);
 
@@ -29,6 +31,21 @@ const NO_RESULTS_OF_A_DRIVE: [&str; 18] = [
     "whereabouts",
     "differences",
 ];
+
+/// Results that a screen and the default charts show.
+pub(crate) fn main_results(task: Task) -> &'static [&'static str] {
+    match task {
+        Task::Validate => &["compared", "tie", "rounding", "approximation", "undecided", "defects"],
+        Task::Render => &["camera.hits", "beam-0.visible_share", "beam-0.lit_pixels", "beam-0.flux_w"],
+        Task::Drive => &[
+            "truth.found_share",
+            "truth.missed_share",
+            "truth.false_share",
+            "truth.clear_way_mean_m",
+            "driven_m",
+        ],
+    }
+}
 
 /// Results of a drive: the numbers of its `summary.json`, and shares of them.
 pub(crate) fn drive_results(summary: &Value) -> Vec<Named> {

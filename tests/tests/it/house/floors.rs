@@ -30,14 +30,14 @@ const FLOORS: &[(&str, u32)] = &[
     ("scene-io", 4),
     ("diff", 5),
     ("drive", 5),
-    ("cast", 5),
     ("pack", 5),
-    ("harness", 6),
-    ("campaign", 7),
-    ("sweep", 7),
-    ("raypencil", 8),
-    ("cli", 9),
-    ("python", 10),
+    ("cast", 6),
+    ("harness", 7),
+    ("campaign", 8),
+    ("sweep", 8),
+    ("raypencil", 9),
+    ("cli", 10),
+    ("python", 11),
 ];
 
 /// Narrower than their floor: these crates may depend on no others than those named.

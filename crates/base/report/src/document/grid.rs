@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crate::table::{Align, Table};
 
-use super::Room;
+use super::room::{Room, is_shown};
 
 /// A column.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -134,12 +134,4 @@ impl Grid {
 /// Whether a column has a head; names and values need none.
 pub(super) fn has_heads(shown: &[(usize, &Column)]) -> bool {
     shown.iter().any(|(_, column)| !column.head.is_empty())
-}
-
-pub(super) fn is_shown(room: Room, on_screen: bool) -> bool {
-    match room {
-        Room::Everywhere => true,
-        Room::Screen => on_screen,
-        Room::Wide => !on_screen,
-    }
 }

@@ -6,13 +6,21 @@ use crate::defect_list::DefectLine;
 use crate::table::Align;
 use crate::version::VERSION;
 
-use super::grid::is_shown;
-use super::{Block, Column, Document, Grid};
+use super::grid::{Column, Grid};
+use super::model::{Block, Document};
+use super::room::is_shown;
 
 /// Maximum number of findings that are listed.
 const MAX_LISTED: usize = 10;
 
-pub(super) fn markdown(document: &Document) -> String {
+impl Document {
+    /// The document as a comment on a pull request.
+    pub fn markdown(&self) -> String {
+        markdown(self)
+    }
+}
+
+fn markdown(document: &Document) -> String {
     let mut text = format!("### {}\n", markdown_text(&document.signed()));
     for remark in &document.remarks {
         let _ = write!(text, "\n{}\n", markdown_text(remark));

@@ -7,8 +7,9 @@ use crate::page::page_head;
 use crate::table::Align;
 use crate::version::VERSION;
 
-use super::grid::{has_heads, is_shown};
-use super::{Block, Document, Grid};
+use super::grid::{Grid, has_heads};
+use super::model::{Block, Document};
+use super::room::is_shown;
 
 #[derive(Template)]
 #[template(path = "document.html")]
@@ -48,7 +49,17 @@ struct CellOfPage<'a> {
     is_wrong: bool,
 }
 
-pub(super) fn page(document: &Document) -> Result<String, askama::Error> {
+impl Document {
+    /// The document as one HTML file that links to nothing.
+    ///
+    /// # Errors
+    /// An error of the template.
+    pub fn page(&self) -> Result<String, askama::Error> {
+        page(self)
+    }
+}
+
+fn page(document: &Document) -> Result<String, askama::Error> {
     let sign = document.outcome.sign();
     let blocks: Vec<Option<Part<'_>>> = document.blocks.iter().map(part).collect::<Result<_, _>>()?;
     Page {

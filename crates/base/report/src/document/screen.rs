@@ -4,18 +4,28 @@ use std::fmt::Write as _;
 
 use crate::version::VERSION;
 
-use super::grid::is_shown;
-use super::{Block, Document, Grid};
+use super::grid::Grid;
+use super::model::{Block, Document};
+use super::room::is_shown;
 
 /// How far the later lines of a sentence stand to the right.
 const INDENT: &str = "    ";
 
-/// What was asked, the blocks that have room, and the verdict as the last lines: they stand above the prompt.
-pub(super) fn screen(document: &Document) -> String {
-    screen_of_width(document, usize::MAX)
+impl Document {
+    /// The document for a terminal, whatever its width.
+    pub fn screen(&self) -> String {
+        self.screen_of_width(usize::MAX)
+    }
+
+    /// The document for a terminal with lines of so many characters: long names lose their beginning, sentences are wrapped.
+    /// Commands stay whole, as they are to be copied.
+    pub fn screen_of_width(&self, chars: usize) -> String {
+        screen(self, chars)
+    }
 }
 
-pub(super) fn screen_of_width(document: &Document, chars: usize) -> String {
+/// What was asked, the blocks that have room, and the verdict as the last lines: they stand above the prompt.
+fn screen(document: &Document, chars: usize) -> String {
     let question = format!("raypencil {VERSION}: {}", document.question);
     let mut text: String = question.lines().map(|line| without_beginning(line, chars) + "\n").collect();
     for block in &document.blocks {
