@@ -122,7 +122,7 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
     say(&if json { document.json() } else { document.screen() });
     if !json {
         let beside = "figures, drive.png, maps (npy, tif, ply, geojson, csv, nav2), junit.xml, summary.md, summary.json";
-        say(&format!("\n  {}\n  beside it: {beside}\n", folder.join("report.html").display()));
+        say(&format!("  {}\n  beside it: {beside}\n", folder.join("report.html").display()));
     }
     Ok(if run.passes() { Outcome::Fine } else { Outcome::Differs })
 }
