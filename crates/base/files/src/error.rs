@@ -76,7 +76,6 @@ impl FileError {
         Self::Io { path: path.to_path_buf(), action, source }
     }
 
-    /// A fault of the recording at `path`.
     pub(crate) fn recording(path: &Path, fault: Fault) -> Self {
         Self::Recording(fault.in_file(path))
     }

@@ -180,7 +180,6 @@ fn remove_part(part: &Path) {
     let _ = if is_folder { std::fs::remove_dir_all(part) } else { std::fs::remove_file(part) };
 }
 
-/// Locks a folder.
 fn lock(folder: &Path) -> Result<Option<File>, FolderError> {
     let path = folder.join(LOCK_NAME);
     // The file may vanish between its opening and its locking, when another run ends: then it is opened again.

@@ -78,7 +78,6 @@ impl JunitSuite {
     }
 }
 
-/// Outcome of a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Outcome {
     Passed,

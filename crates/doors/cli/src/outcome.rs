@@ -54,7 +54,6 @@ pub(crate) enum Trouble {
     /// A pack or a candidate cannot be checked.
     #[error("{error}")]
     Check {
-        /// The error.
         error: Box<CheckError>,
         /// What to declare, if that may help.
         #[help]
@@ -64,7 +63,6 @@ pub(crate) enum Trouble {
     /// A candidate cannot be read.
     #[error("{error}")]
     Candidate {
-        /// The error.
         error: Box<CandidateError>,
         /// What to declare, if that may help.
         #[help]
@@ -88,7 +86,6 @@ pub(crate) enum Trouble {
     Drive {
         /// The scene as it was given.
         scene: String,
-        /// The error.
         error: DriveError,
     },
 

@@ -111,13 +111,11 @@ pub(crate) fn map_format() -> impl TypedValueParser<Value = MapFormat> {
     ])
 }
 
-/// Version of a pack.
 pub(crate) fn pack_version(text: &str) -> Result<String, String> {
     let label = PackLabel { version: Some(text.into()), licence: None };
     label.check().map(|()| text.into()).map_err(|fault| fault.to_string())
 }
 
-/// Licence of a pack.
 pub(crate) fn licence(text: &str) -> Result<String, String> {
     let label = PackLabel { version: None, licence: Some(text.into()) };
     label.check().map(|()| text.into()).map_err(|fault| fault.to_string())

@@ -38,7 +38,6 @@ static JOB: LazyLock<DriveJob> = LazyLock::new(|| {
     DriveJob::new(&loaded, None, String::new()).expect("a drive")
 });
 
-/// Renderer of raypencil by its name.
 fn renderer(name: &str) -> Box<dyn Renderer> {
     contender(name).expect("raypencil has this renderer").renderer
 }
@@ -85,7 +84,6 @@ fn frame(bencher: Bencher<'_, '_>, name: &str) {
     bencher.bench_local(render);
 }
 
-/// Whole cycle.
 #[divan::bench(args = ["scanline", "tracer"], sample_count = 51, sample_size = 1)]
 fn cycle(bencher: Bencher<'_, '_>, name: &str) {
     let mut cycles = Cycles::new(name);

@@ -35,7 +35,6 @@ static GROUNDS: [Ground; 4] = [
     Ground { name: "yard", subject: LazyLock::new(yard) },
 ];
 
-/// The file of the yard, if it is there.
 fn yard_file() -> Option<PathBuf> {
     let file = Path::new(&std::env::var_os("RAYPENCIL_EXTRA_DATA")?).join("marsyard2021.glb");
     file.exists().then_some(file)

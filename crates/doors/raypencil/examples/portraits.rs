@@ -30,7 +30,6 @@ const VIEW_WIDTH: u32 = 760;
 /// Supersampling: each pixel is the mean of a square with this many rays on each side.
 const RAYS_PER_PIXEL_SIDE: u32 = 3;
 
-/// Elevation of the sun, degrees.
 const SUN_ELEVATION_DEG: f64 = 22.0;
 
 /// Azimuth of the sun, degrees to the left of the x axis: behind the camera to its left.
@@ -183,7 +182,6 @@ impl Sun {
         Self { direction, camera, map }
     }
 
-    /// Whether the sun lights a point.
     fn lights(&self, point: DVec3, normal: DVec3) -> bool {
         let camera = &self.camera.sensor;
         // A point slightly above the surface, since a texel of the shadow map is 1.5 cm wide.

@@ -88,7 +88,6 @@ impl OwnScenes {
         usize::try_from(terrain).ok().and_then(|at| self.files.get(at)).map_or("", |(name, _)| name)
     }
 
-    /// Names of all files.
     pub(crate) fn names(&self) -> String {
         let names: Vec<&str> = self.files.iter().map(|(name, _)| name.as_str()).collect();
         names.join(", ")

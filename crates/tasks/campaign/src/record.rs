@@ -180,7 +180,6 @@ impl PartRecord {
     }
 }
 
-/// The record of a largest value.
 fn worst_record(Largest { value, place, .. }: Largest) -> WorstRecord {
     WorstRecord {
         value: value.is_finite().then_some(value),

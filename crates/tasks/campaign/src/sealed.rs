@@ -8,7 +8,6 @@ use serde::{Deserialize, Serialize};
 use crate::error::CampaignError;
 use crate::plan::Campaign;
 
-/// Number of the format.
 const FORMAT: u32 = 2;
 
 /// Content of a file.

@@ -32,7 +32,6 @@ pub(crate) struct ShardResult {
     pub(crate) terrains: Vec<TerrainRecord>,
 }
 
-/// Path of a shard's result.
 fn result_file(folder: &Path, shard: Shard) -> PathBuf {
     folder.join(format!("shard-{}-of-{}.json", shard.index + 1, shard.count))
 }

@@ -49,7 +49,6 @@ impl<'a> CampaignTotal<'a> {
         total
     }
 
-    /// Adds the record of a scene.
     fn add(&mut self, terrain: u64, record: &'a PartRecord) {
         self.compared += record.compared;
         self.hits += record.hits;

@@ -58,7 +58,6 @@ pub struct ComparedHits<'a> {
     pub ray_command: &'a dyn Fn(usize) -> String,
 }
 
-/// A number of a hit.
 type OfHit = fn(&FirstHit) -> f64;
 
 /// Writes `report.html` into a folder that is there. Returns its path.
@@ -394,7 +393,6 @@ struct Layout {
     height: u32,
     /// The ray of each cell; `None` behind the last one.
     rays: Vec<Option<usize>>,
-    /// The layout in words.
     words: String,
 }
 

@@ -11,10 +11,8 @@ pub(crate) const HALF_SIDE_PX: u32 = 256;
 /// Colour of unknown cells, and of the space around the camera's view.
 const EMPTY_COLOUR: [u8; 3] = [236, 234, 229];
 
-/// Colour of the vehicle on the map.
 const VEHICLE_COLOUR: [u8; 3] = [226, 35, 26];
 
-/// One frame of the animation.
 #[derive(Debug, Clone)]
 pub(crate) struct AnimationFrame {
     pub view: CameraView,
@@ -50,7 +48,6 @@ pub(crate) struct MapThumbnail {
     pixels: Vec<MapPixel>,
 }
 
-/// Content of a pixel of the map.
 #[derive(Debug, Clone, Copy)]
 enum MapPixel {
     Unknown,

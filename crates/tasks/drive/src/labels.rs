@@ -2,7 +2,6 @@
 
 use raypencil_rover::Label;
 
-/// Word of a label.
 pub(crate) fn label_word(label: Label) -> &'static str {
     match label {
         Label::Obstacle => "obstacle",

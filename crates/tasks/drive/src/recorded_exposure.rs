@@ -12,7 +12,6 @@ use crate::sun::Sun;
 /// has more.
 pub(crate) const MAX_LIT_PIXELS: usize = 1 << 23;
 
-/// Record of one exposure.
 #[derive(Debug, Clone)]
 pub(crate) struct RecordedExposure {
     /// Index of the exposure in the drive, which selects the camera's noise.

@@ -212,7 +212,6 @@ impl SectorTruth {
         self.false_obstacle as f64 / self.sectors.max(1) as f64
     }
 
-    /// Sentences for a screen.
     pub(crate) fn sentences(&self) -> [String; 2] {
         let Self { missed, not_found, .. } = self;
         let unknown = self.unknown_not_measured

@@ -16,7 +16,6 @@ use crate::shadow_map::ShadowMap;
 /// map only.
 const BACKGROUND_MAX_RANGE_M: f64 = 1e4;
 
-/// Sun of a drive.
 pub(crate) struct Sun {
     light: Sunlight,
     tracer: Tracer,

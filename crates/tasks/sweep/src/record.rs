@@ -10,7 +10,6 @@ use serde_json::Value;
 use crate::plan::Sweep;
 use crate::results::Named;
 
-/// Number of the format.
 const FORMAT: u32 = 1;
 
 /// Maximum size of a record, bytes. One has some hundred numbers.
@@ -74,7 +73,6 @@ pub(crate) fn record_file(folder: &Path, sweep: &Sweep, run: u64) -> PathBuf {
     folder.join("runs").join(format!("{}.json", &sweep.identity(run)[..32]))
 }
 
-/// Writes a record.
 pub(crate) fn write_record(
     folder: &Path,
     sweep: &Sweep,

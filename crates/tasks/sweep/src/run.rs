@@ -10,7 +10,6 @@ use crate::plan::{Part, Sweep};
 use crate::record::{Outcome, read_record, write_record};
 use crate::work::Worker;
 
-/// Name of the file that has the plan of a sweep.
 const PLAN_FILE: &str = "sweep.json";
 
 /// Maximum size of a plan, bytes.

@@ -26,7 +26,6 @@ fn step(case: Case<'_>, channel: Channel) -> f64 {
     }
 }
 
-/// Whether a stated value is near an exact one.
 pub(crate) fn is_near(case: Case<'_>, channel: Channel, place: Place, stated: Value, exact: Value) -> bool {
     let tolerance = tolerance(case, channel);
     match (stated, exact) {

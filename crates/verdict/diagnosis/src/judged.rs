@@ -70,7 +70,6 @@ pub(crate) fn judge(case: Case<'_>, plan: &Plan, asked: &Asked, precision: Preci
     Judged { right: check.compared().saturating_sub(wrong), wrong }
 }
 
-/// The recording after the corrections of a plan.
 fn corrected_recording(case: Case<'_>, plan: &Plan) -> Recorded {
     let mut recorded = case.recorded.clone();
     for (channel, subset) in plan.applied.iter().filter(|(_, subset)| *subset != 0) {

@@ -56,7 +56,6 @@ pub enum Cosine {
 }
 
 impl Cosine {
-    /// All of them.
     pub(crate) const ALL: [Self; 3] = [Self::Incidence, Self::OffAxis, Self::Emission];
 
     pub(crate) fn channel(self) -> &'static str {

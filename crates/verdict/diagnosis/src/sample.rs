@@ -10,7 +10,6 @@ use crate::channel::hit_quantity;
 /// A ray that sorts: sensor, row, column.
 pub(crate) type Key = (SensorId, u32, u32);
 
-/// The key of a ray.
 pub(crate) fn key(place: Place) -> Key {
     (place.sensor, place.j, place.i)
 }
@@ -19,10 +18,8 @@ fn place((sensor, j, i): Key) -> Place {
     Place { sensor, i, j }
 }
 
-/// The wrong rays of a check.
 #[derive(Debug)]
 pub(crate) struct WrongRays {
-    /// All of them.
     pub(crate) all: BTreeSet<Key>,
     /// Those of which what they meet is wrong, and not only what comes back.
     pub(crate) of_hits: BTreeSet<Key>,

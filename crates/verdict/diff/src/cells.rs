@@ -63,7 +63,6 @@ pub(crate) enum Comparison {
     Incomparable,
 }
 
-/// Compares two numbers.
 pub(crate) fn compare_numbers(a: f64, b: f64) -> Comparison {
     if a == b || a.is_nan() && b.is_nan() {
         Comparison::Equal

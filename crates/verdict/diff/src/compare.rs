@@ -78,7 +78,6 @@ pub fn diff(a: &Channels, b: &Channels, thresholds: &Thresholds) -> Result<Diffe
     Ok(Difference { channels, only: [missing(a, b), missing(b, a)], thresholds: *thresholds, rulings: None })
 }
 
-/// Compares one channel.
 fn compare_channel(
     key: &str,
     a: &Channel,

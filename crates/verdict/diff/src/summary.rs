@@ -60,7 +60,6 @@ fn rulings(rulings: &Rulings) -> Value {
     json!({ "channels": rulings.channels.iter().map(channel).collect::<Vec<_>>(), "not_ruled": rulings.not_ruled })
 }
 
-/// One channel.
 fn channel(channel: &ChannelDifference) -> Value {
     let worst = channel.worst.map(
         |worst| json!({ "column": worst.i, "row": worst.j, "a": number(worst.a), "b": number(worst.b) }),

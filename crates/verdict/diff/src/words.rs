@@ -45,7 +45,6 @@ pub(crate) fn rulings(difference: &Difference) -> Vec<String> {
     lines
 }
 
-/// The name of a class in reports.
 pub(crate) fn class_name(class: Class) -> &'static str {
     match class {
         Class::Agree => "right",

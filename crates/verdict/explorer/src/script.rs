@@ -120,7 +120,6 @@ pub(crate) const STYLE: &str = concat!(
     include_str!("../script/view3d.css")
 );
 
-/// The whole script.
 pub(crate) static SCRIPT: LazyLock<String> = LazyLock::new(|| joined(MODULES));
 
 /// The modules as one text.

@@ -23,7 +23,6 @@ impl<'m> StatedHit<'m> {
         Self { map, i, j, face: at(&map.face, i, j), range: at(&map.range, i, j) }
     }
 
-    /// The value of a quantity.
     pub(crate) fn value(&self, quantity: HitQuantity) -> Option<HitValue> {
         self.map.raster(quantity)?.at(self.i, self.j)
     }

@@ -43,7 +43,6 @@ const NORMAL_ROUNDINGS: f64 = 13.0;
 /// n.(a - o) and of 1/t, each of which carries 1/c, times c: (11 + 34) kappa u S / R, and a few roundings.
 const INCIDENCE_ROUNDINGS: f64 = 48.0;
 
-/// The bounds of one hit by one renderer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct HitBounds {
     /// Range and depth, metres.
@@ -52,7 +51,6 @@ pub(crate) struct HitBounds {
     pub(crate) point: f64,
     /// Distance of the unit normal.
     pub(crate) normal: f64,
-    /// Cosine of incidence.
     pub(crate) cos_incidence: f64,
 }
 
@@ -62,7 +60,6 @@ impl HitBounds {
         FaceShape::of(mesh, face).met_by(ray).bounds(range, precision)
     }
 
-    /// The bounds for an exact hit along `ray`.
     pub(crate) fn of_exact(scene: &Scene, ray: &Ray, hit: &Hit, precision: Precision) -> Self {
         Self::of(scene.mesh(), hit.face, ray, hit.range, precision)
     }
@@ -235,7 +232,6 @@ pub(crate) struct ReturnValues {
 }
 
 impl ReturnValues {
-    /// The values of an exact hit and its exact return.
     pub(crate) fn of_exact(scene: &Scene, hit: &Hit, exact: &Return) -> Self {
         Self {
             range: hit.range,

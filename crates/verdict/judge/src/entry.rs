@@ -47,7 +47,6 @@ impl<'r> RayEntry<'r> {
         Self { ruling: Some("the true hit".into()), ..Self::compared(place, result) }
     }
 
-    /// Enters the class of one item.
     #[inline]
     pub(crate) fn class(&mut self, item: impl Into<Item>, class: Class) {
         let item = item.into();

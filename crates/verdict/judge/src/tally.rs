@@ -306,7 +306,6 @@ impl SensorResult {
         self.by_class[class as usize]
     }
 
-    /// The tally of an item.
     #[inline]
     pub(crate) fn tally(&mut self, item: Item) -> &mut ItemTally {
         self.items.entry(item)
@@ -319,7 +318,6 @@ impl SensorResult {
         }
     }
 
-    /// Adds the results of later rays.
     pub(crate) fn add(&mut self, later: Self) {
         add_counts(&mut self.by_class, &later.by_class);
         self.not_compared += later.not_compared;

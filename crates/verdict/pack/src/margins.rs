@@ -20,7 +20,6 @@ pub(crate) struct SensorMargins {
 }
 
 impl SensorMargins {
-    /// The margins of all rays of `sensor`.
     pub(crate) fn find(referee: &Referee<'_>, scene: &Scene, sensor: SensorId) -> Self {
         let (width, height) = scene.size(sensor).expect("a sensor of this scene");
         let row = |j: u32| {

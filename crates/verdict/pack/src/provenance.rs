@@ -14,7 +14,6 @@ use crate::note_values::{ChannelNames, MissNumber};
 /// The note's file name.
 const FILE_NAME: &str = "candidate.json";
 
-/// Number of the format.
 const FORMAT: u64 = 1;
 
 /// Maximum size of a note: 1 MiB.

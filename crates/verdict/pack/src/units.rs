@@ -2,7 +2,6 @@
 
 use raypencil_scene::FluxModel;
 
-/// The unit of a flux.
 pub(crate) fn unit_of_flux(model: FluxModel) -> &'static str {
     match model {
         FluxModel::Radiometric => "W",
@@ -10,7 +9,6 @@ pub(crate) fn unit_of_flux(model: FluxModel) -> &'static str {
     }
 }
 
-/// The unit of a channel of a scene whose flux model is `model`.
 pub(crate) fn unit_of_channel(channel: &str, model: FluxModel) -> &'static str {
     let other = model.other();
     match channel {

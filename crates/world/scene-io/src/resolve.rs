@@ -19,7 +19,6 @@ pub(crate) fn turned(yaw_left_deg: f64, pitch_down_deg: f64, roll_right_deg: f64
 }
 
 impl Mount {
-    /// Pose of the sensor in the vehicle frame.
     fn vehicle_from_sensor(&self) -> Pose {
         let turned = turned(self.yaw_left_deg, self.pitch_down_deg, self.roll_right_deg);
         Pose { position: self.position, ..turned * Pose::VEHICLE_FROM_FORWARD_SENSOR }

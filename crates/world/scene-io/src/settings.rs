@@ -76,7 +76,6 @@ impl Setting {
         self.key.split('.').collect()
     }
 
-    /// The value as TOML.
     fn toml(&self) -> Value {
         Value::from_str(&self.value).unwrap_or_else(|_| Value::from(self.value.as_str()))
     }

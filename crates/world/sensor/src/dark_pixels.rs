@@ -36,7 +36,6 @@ const WHOLE: f64 = (1_u64 << 52) as f64;
 /// Largest mean of dark electrons. (Beyond, `poisson` does not search.)
 const MAX_MEAN: f64 = 10.0;
 
-/// Dark pixels of a sensor.
 pub(crate) struct DarkPixels<'s> {
     sensor: &'s ImageSensor,
     /// Expected dark electrons, and the probability that there are none.

@@ -33,7 +33,6 @@ pub(crate) enum KernelForm {
 
 /// End of a Gaussian kernel, standard deviations: 2e-9 of the light lies beyond on each axis.
 const GAUSSIAN_CUTOFF_SIGMAS: f64 = 6.0;
-/// Maximum half width of a separable kernel, cells.
 const MAX_SEPARABLE_HALF_WIDTH_CELLS: f64 = 16_384.0;
 /// Maximum half width of a dense kernel, cells; its cost grows with the square.
 const MAX_DENSE_HALF_WIDTH_CELLS: f64 = 512.0;

@@ -51,7 +51,6 @@ impl Ground {
         index
     }
 
-    /// Adds a face.
     pub(crate) fn add_face(&mut self, corners: [u32; 3], material: u16) {
         self.faces.push(corners);
         self.face_materials.push(material);

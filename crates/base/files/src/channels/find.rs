@@ -76,7 +76,6 @@ pub(super) fn recording_files(path: &Path) -> Result<Vec<RecordingFile>, FileErr
     Ok(found)
 }
 
-/// Paths of all entries of a folder.
 fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
     fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect()
 }

@@ -19,7 +19,6 @@ const OFF_AXIS: &str = "offAxis.V";
 /// Cosine of the angle theta between normal and view. The name is that of the published format.
 const EMISSION: &str = "emission.V";
 
-/// Unit of a flux.
 fn unit(model: FluxModel) -> &'static str {
     match model {
         FluxModel::Radiometric => "W",

@@ -4,7 +4,6 @@
 use crate::error::Fault;
 use crate::shape::Shape;
 
-/// Contents of a header.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Header {
     pub number: Number,

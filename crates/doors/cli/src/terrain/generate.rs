@@ -100,7 +100,6 @@ fn report(command: &TerrainGenerate, ground: &MarsGround, mesh: &Mesh) -> Value 
     })
 }
 
-/// The report for people.
 fn screen(report: &Value) -> String {
     let number = |pointer: &str| report.pointer(pointer).and_then(Value::as_f64).unwrap_or(f64::NAN);
     let whole = |pointer: &str| report.pointer(pointer).map_or(String::new(), Value::to_string);

@@ -73,7 +73,6 @@ fn report(command: &TerrainImport, dem: &Dem, mesh: &Mesh) -> Value {
     report
 }
 
-/// The report for people.
 fn screen(report: &Value, facts: &DemFacts) -> String {
     let text = |value: &Value| value.as_str().map_or(value.to_string(), String::from);
     let at = |pointer: &str| report.pointer(pointer).map_or(String::new(), text);

@@ -6,7 +6,6 @@ use serde_json::Value;
 
 use crate::Trouble;
 
-/// Creates the folder of an output file.
 pub(super) fn create_folder(output: &Path) -> Result<(), Trouble> {
     match output.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => Ok(raypencil::io::create_folder(folder)?),

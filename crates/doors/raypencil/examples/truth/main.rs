@@ -32,7 +32,6 @@ const DRIVES: [(&str, &str, Option<[f64; 2]>); 3] = [
 
 type Failure = Box<dyn std::error::Error>;
 
-/// A change of a plan.
 type Change = fn(&mut DrivePlan);
 
 /// All rules as printed.

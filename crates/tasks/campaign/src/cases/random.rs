@@ -209,7 +209,6 @@ pub fn cases() -> impl Strategy<Value = Case> {
     })
 }
 
-/// Profiles of every kind.
 fn profiles() -> impl Strategy<Value = Profile> {
     prop_oneof![
         Just(Profile::Paper),

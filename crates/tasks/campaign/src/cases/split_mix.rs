@@ -30,7 +30,6 @@ impl SplitMix64 {
         Self { seed, index: 0 }
     }
 
-    /// The next 64 bits.
     pub(crate) fn next_u64(&mut self) -> u64 {
         self.index += 1;
         hash(self.seed, self.index)

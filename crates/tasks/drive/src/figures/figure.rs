@@ -8,7 +8,6 @@ pub(crate) const PLOT_SIDE_PX: f64 = 560.0;
 /// Margins around a plot, pixels: left, above, right, below.
 pub(crate) const MARGINS_PX: [f64; 4] = [64.0, 24.0, 160.0, 56.0];
 
-/// Figure of a drive.
 pub(crate) struct Figure {
     /// Name of its files, without `.svg` and `.png`.
     pub stem: &'static str,

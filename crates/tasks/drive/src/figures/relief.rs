@@ -25,7 +25,6 @@ const RELIEF_CENTRE_PX: [f64; 2] = [430.0, 300.0];
 /// Largest width and height of the relief, pixels.
 const RELIEF_MAX_SIZE_PX: [f64; 2] = [740.0, 530.0];
 
-/// Colour of the cells' borders.
 const CELL_BORDER_COLOUR: Colour = [126, 108, 92];
 
 /// Colour of the grid below the relief.

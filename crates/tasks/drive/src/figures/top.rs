@@ -82,7 +82,6 @@ fn navigator_figure(mut top: TopView, vectors: &[LabelledVector]) -> Drawing {
     top.drawing
 }
 
-/// Colour of a label.
 fn label_colour(label: Label) -> Colour {
     match label {
         Label::Obstacle => [200, 40, 30],
@@ -96,7 +95,6 @@ struct TopView {
     drawing: Drawing,
     /// Global x and y of the lower left corner, metres.
     low: DVec2,
-    /// Pixels per metre.
     pixels_per_metre: f64,
     /// Height of the plot, pixels.
     height: f64,
@@ -197,7 +195,6 @@ impl TopView {
         self.line(&[centre, centre + forward * (0.5 * vehicle.wheelbase)], INK, 1.5);
     }
 
-    /// Draws the key of the labels' colours.
     fn draw_label_key(&mut self, x: f64) {
         for (line, label) in [Label::Obstacle, Label::Unknown, Label::Visibility].into_iter().enumerate() {
             let y = MARGINS_PX[1] + 14.0 + 20.0 * line as f64;

@@ -60,7 +60,6 @@ impl DriveBag {
         Ok(Self { bag, before: None })
     }
 
-    /// Takes an image.
     pub(super) fn image(
         &mut self,
         job: &DriveJob,

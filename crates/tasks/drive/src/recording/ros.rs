@@ -22,7 +22,6 @@ pub(super) fn transform(parent: &str, child: &str, at: Stamp, pose: &Pose) -> ro
     }
 }
 
-/// The same as a pose.
 fn pose(pose: &Pose) -> ros::Pose {
     let [x, y, z, qx, qy, qz, qw] = numbers(pose);
     ros::Pose {

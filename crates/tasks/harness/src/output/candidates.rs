@@ -53,7 +53,6 @@ pub(crate) struct Cell {
 }
 
 impl Cell {
-    /// The cell in a few words.
     pub(crate) fn words(&self) -> String {
         if self.absent.is_empty() { format!("{}, {}", self.wrong, self.classes) } else { self.absent.into() }
     }
@@ -190,7 +189,6 @@ fn cell(subject: &Subject, item: Item, tally: &ItemTally, recorded: Option<&Reco
     }
 }
 
-/// A number with its sign.
 fn signed(value: f64) -> String {
     if value > 0.0 { format!("+{}", number(value)) } else { number(value) }
 }

@@ -38,7 +38,6 @@ const APPROXIMATION_COLUMN: usize = 4;
 /// Index of the column of places there.
 const PLACE_COLUMN: usize = 7;
 
-/// Maximum warnings.
 const MAX_WARNINGS: usize = 2;
 
 /// Maximum described defects.
@@ -89,7 +88,6 @@ pub fn whole_screen(validation: &Validation, folder: Option<&Path>) -> String {
     screen(validation, folder, Room::Unlimited)
 }
 
-/// The room for the text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Room {
     /// One screen of a terminal: what does not fit is cut.

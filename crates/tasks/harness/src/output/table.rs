@@ -60,7 +60,6 @@ pub(crate) struct CauseRow {
     pub(crate) error: Option<Extreme>,
 }
 
-/// The rows of all causes.
 pub(crate) fn causes(subject: &Subject, approximations: &ApproximationTallies) -> Vec<CauseRow> {
     let row = |(cause, tally): (&Switches, &ApproximationTally)| CauseRow {
         cause: cause.to_string(),

@@ -7,7 +7,6 @@ use serde::Serialize;
 use crate::scoreboard::CandidateReport;
 use crate::validation::Validation;
 
-/// The verdict on a validation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Verdict {

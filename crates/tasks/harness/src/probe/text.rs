@@ -137,7 +137,6 @@ fn explained_in_words(one: &Explained) -> String {
     format!("face {} is {}: {}", one.face.0, if one.added { "added" } else { "lost" }, reasons.join("; "))
 }
 
-/// A ruling in words.
 fn in_words(ruling: Ruling) -> String {
     match ruling {
         Ruling::Exact => "exact".into(),
@@ -152,7 +151,6 @@ fn in_words(ruling: Ruling) -> String {
     }
 }
 
-/// A margin in words.
 fn margin(margin: &Margin) -> String {
     match margin.witness {
         None if margin.lo >= 1.0 => "at least 1 cell".into(),

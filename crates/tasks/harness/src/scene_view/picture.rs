@@ -24,7 +24,6 @@ const MAX_POINTS: usize = 1500;
 /// Colours of the camera and of the beams in turn.
 const COLOURS: [Colour; 5] = [[0, 90, 200], [200, 40, 40], [230, 140, 0], [20, 140, 90], [130, 60, 170]];
 
-/// Colour of the ground.
 const GROUND: Colour = [225, 219, 206];
 
 /// One of the two views: the axes of the scene that run to the right and upwards.

@@ -16,7 +16,6 @@ use raypencil_scene::{FaceId, Hit, HitQuantity, Ray};
 pub(super) struct AssumedHit {
     /// The exact values of the face that is named, if that is admissible, else of the true one; `None`: no hit.
     pub(super) hit: Option<Hit>,
-    /// Whether it is the true hit.
     pub(super) is_true: bool,
     /// Whether the recording names the face.
     pub(super) is_named: bool,
@@ -26,7 +25,6 @@ pub(super) struct AssumedHit {
     pub(super) bounds: Option<HitBounds>,
 }
 
-/// A ruling in words.
 pub(super) fn words(ruling: Ruling) -> String {
     match ruling {
         Ruling::Exact => "exact".into(),

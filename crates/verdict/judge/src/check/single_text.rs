@@ -39,7 +39,6 @@ impl CheckedRay {
     }
 }
 
-/// A class in one word.
 fn class_words(class: Class) -> &'static str {
     match class {
         Class::Agree => "agrees",

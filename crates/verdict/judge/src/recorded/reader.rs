@@ -100,7 +100,6 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The same error with a line of help.
     fn with_help(error: RecordingError, words: Option<String>) -> RecordingError {
         let help = words.map(|words| Box::new(Help { words }));
         match error {

@@ -180,7 +180,6 @@ pub struct ManifestChannel {
     pub kind: ChannelType,
 }
 
-/// A fault of the pack's file at `path`.
 pub(crate) fn pack_fault(path: &Path, fault: Fault) -> FileError {
     FileError::Pack(fault.in_file(path))
 }

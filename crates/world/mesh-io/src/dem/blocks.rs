@@ -218,7 +218,6 @@ impl Blocks {
         Ok(())
     }
 
-    /// Place of a block in messages.
     fn place(&self, index: u64) -> String {
         format!("{} {index}", self.kind)
     }

@@ -95,7 +95,6 @@ fn refuse_other_models(keys: &GeoKeys) -> Result<(), Fault> {
     }
 }
 
-/// The unit of the map.
 fn map_unit(
     keys: &GeoKeys,
     code: Option<u16>,

@@ -142,7 +142,6 @@ fn system(system: &AxisSystem) -> Value {
     })
 }
 
-/// The name of a coordinate system.
 fn name(system: &AxisSystem) -> String {
     let name = match (&system.name, system.code) {
         (Some(name), Some(code)) => format!("{name} (EPSG:{code})"),

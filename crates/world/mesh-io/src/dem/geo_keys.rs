@@ -64,7 +64,6 @@ impl Key {
     }
 }
 
-/// The values of the geo keys.
 #[derive(Debug, Default)]
 pub(super) struct GeoKeys {
     shorts: BTreeMap<Key, u16>,

@@ -35,7 +35,6 @@ pub struct HeightUnit {
     pub is_depth: bool,
 }
 
-/// The metre.
 pub(super) const METRE: LengthUnit = unit(9001, "metre", 1.0, 1.0);
 
 const fn unit(code: u16, name: &'static str, numerator: f64, denominator: f64) -> LengthUnit {

@@ -9,7 +9,6 @@ use crate::gltf::buffers::{Buffers, missing_reference};
 use crate::gltf::elements::{Elements, place, whole};
 use crate::gltf::json::{QUANTIZATION, is_used};
 
-/// The accessor at `index`.
 pub(super) fn accessor(root: &Root, index: Index<Accessor>) -> Result<&Accessor, Fault> {
     let index = index.value();
     root.accessors.get(index).ok_or_else(|| missing_reference(place(index), root.accessors.len()))
@@ -162,7 +161,6 @@ fn kind(accessor: &Accessor) -> (Option<ComponentType>, Option<Type>) {
     (component, shape)
 }
 
-/// Component type and shape for messages.
 fn kind_name(component: Option<ComponentType>, shape: Option<Type>) -> String {
     let shape = shape.map_or("an unknown type".to_string(), |shape| format!("{shape:?}").to_uppercase());
     let component = component.map_or("unknown components".to_string(), |component| format!("{component:?}"));

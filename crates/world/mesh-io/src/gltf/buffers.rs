@@ -32,7 +32,6 @@ enum Loaded<'a> {
     File(PathBuf),
 }
 
-/// A file with buffers.
 struct BufferFile {
     bytes: Vec<u8>,
     digest: Sha256Digest,
@@ -71,7 +70,6 @@ impl<'a> Buffers<'a> {
         })
     }
 
-    /// Bytes of a buffer.
     fn buffer(&mut self, index: usize) -> Result<&[u8], Fault> {
         let place = || format!("buffer {index}");
         let count = self.root.buffers.len();

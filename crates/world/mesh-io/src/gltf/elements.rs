@@ -73,7 +73,6 @@ impl<'a> Elements<'a> {
         }
     }
 
-    /// Bytes of one element.
     pub(super) fn bytes(&self, number: usize) -> &[u8] {
         let at = self.start + number * self.stride;
         &self.bytes[at..at + self.size]

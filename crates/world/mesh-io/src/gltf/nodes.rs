@@ -22,7 +22,6 @@ pub(super) struct PlacedNode {
     pub is_instance: bool,
 }
 
-/// Place of a node in messages.
 pub(super) fn node_place(root: &Root, index: usize) -> String {
     match root.nodes.get(index).and_then(|node| node.name.as_ref()) {
         Some(name) => format!("node {index} {:?}", name.chars().take(80).collect::<String>()),

@@ -97,7 +97,6 @@ pub fn read_triangles(path: &Path) -> Result<TriangleFile, FileError> {
     parse(&read_bytes(path)?, path)
 }
 
-/// Bytes of a mesh file.
 pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, FileError> {
     bytes::read_file(path, MAX_FILE_BYTES).map_err(|error| FileError::io(path, "read", error))
 }

@@ -17,7 +17,6 @@ const HEADER_BYTES: usize = 84;
 /// Size of a face of a binary file: a normal and three corners in single precision, and two bytes of attributes.
 const FACE_BYTES: usize = 50;
 
-/// Reads the faces of a file.
 pub(super) fn read(file: &[u8]) -> Result<Parts, Fault> {
     // A binary file may start with "solid" as well. It has bytes 0, which no text has but at its end: at least one is in its
     // number of faces, which would otherwise need more bytes than any file has.
@@ -209,7 +208,6 @@ struct Corners {
 }
 
 impl Corners {
-    /// Index of a corner.
     fn index(&mut self, vertex: [f64; 3]) -> u32 {
         // -0 + 0 is +0; every other number stays what it is.
         let bits = vertex.map(|coordinate| (coordinate + 0.0).to_bits());

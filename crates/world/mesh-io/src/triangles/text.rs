@@ -61,7 +61,6 @@ pub(super) fn without_mark(text: &[u8]) -> &[u8] {
     text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)
 }
 
-/// Words of a line.
 pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
 }
@@ -73,7 +72,6 @@ pub(super) fn number(word: Option<&[u8]>, place: impl FnOnce() -> String) -> Res
     number.ok_or_else(|| Fault::new(place(), quoted(word), "a decimal number"))
 }
 
-/// A whole number.
 pub(super) fn whole(word: Option<&[u8]>, place: impl FnOnce() -> String) -> Result<i64, Fault> {
     let text = word.and_then(|word| std::str::from_utf8(word).ok());
     let number = text.and_then(|text| text.parse().ok());

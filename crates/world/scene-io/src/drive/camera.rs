@@ -21,7 +21,6 @@ const BLUR_PX: RangeInclusive<f64> = 0.0..=100.0;
 /// Standard deviation of a blur, micrometres.
 const BLUR_UM: RangeInclusive<f64> = 0.0..=1e4;
 
-/// Share of a whole.
 const SHARE: RangeInclusive<f64> = 0.0..=1.0;
 
 /// 0 degrees Celsius, kelvin.

@@ -398,7 +398,6 @@ impl Source<'_> {
         Ok(())
     }
 
-    /// Errors of the localisation sensors.
     fn localisation(&self, keys: &DriveKeys, plan: &mut DrivePlan) -> Result<(), SceneIoError> {
         let errors = &mut plan.errors;
         if let Some(drift) = &keys.position_drift_m_per_s {

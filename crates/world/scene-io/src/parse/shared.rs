@@ -22,7 +22,6 @@ pub(crate) const TURN_DEG: RangeInclusive<f64> = -360.0..=360.0;
 pub(crate) const GLOBAL_M: RangeInclusive<f64> = -1e12..=1e12;
 
 impl Source<'_> {
-    /// Model of the flux, by its word.
     pub(crate) fn flux_model(&self, key: &Spanned<String>) -> Result<FluxModel, SceneIoError> {
         let words = [FluxModel::Radiometric, FluxModel::Eq1].map(|model| (model.word(), model));
         self.word(key, "flux.model", &words)

@@ -29,7 +29,6 @@ pub fn warnings(scene: &Scene, vehicle: Option<&Pose>, hits: Option<&[SensorHits
 #[derive(Debug, Default)]
 pub struct Surveyor {
     both_sides: BothSides,
-    /// A mesh and its shape.
     shape: Option<(Arc<Mesh>, Option<TerrainShape>)>,
 }
 

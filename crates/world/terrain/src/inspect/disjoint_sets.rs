@@ -8,7 +8,6 @@ pub(super) struct DisjointSets {
     opposite: Vec<bool>,
 }
 
-/// Result of a union.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum UnionOutcome {
     /// Two sets became one.

@@ -7,11 +7,9 @@ pub(crate) enum FaceStatus {
     Sound,
     /// Part of the surface, to be turned round.
     Inverted,
-    /// Without area.
     ZeroArea,
     /// Duplicate of a face of lower number: the same corners in the same sense.
     Duplicate,
-    /// Duplicate of a face of another material.
     DuplicateOfOtherMaterial,
 }
 

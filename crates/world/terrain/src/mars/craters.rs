@@ -19,7 +19,6 @@ const DEPTH_PER_DIAMETER: [f64; 2] = [0.2, 0.03];
 const RIM_HEIGHT_PER_DIAMETER: [f64; 2] = [0.04, 0.004];
 /// Width of the rounding of the most degraded rim, per diameter. CHOICE.
 const MAX_RIM_ROUNDING_PER_DIAMETER: f64 = 0.03;
-/// Outer end of the ejecta, radii.
 const EJECTA_END_RADII: f64 = 3.0;
 
 /// Size distribution of the craters.

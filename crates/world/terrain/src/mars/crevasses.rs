@@ -86,7 +86,6 @@ impl Crevasses {
     }
 }
 
-/// One crevasse.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Crevasse {
     settings: Crevasses,

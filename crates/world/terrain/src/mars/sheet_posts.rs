@@ -7,7 +7,6 @@ use crate::Ground;
 /// Posts of the finest level from one post of level 0 to the next.
 pub(super) const FINE_STEPS: u32 = 1 << (LEVELS - 1);
 
-/// Material indices of the sheet.
 pub(super) struct SheetMaterials {
     pub soil: u16,
     pub wall: u16,

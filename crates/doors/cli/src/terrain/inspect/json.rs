@@ -6,7 +6,6 @@ use serde_json::{Value, json};
 
 use super::report::Report;
 
-/// The report as JSON.
 pub(super) fn report_json(report: &Report) -> String {
     let mut printed = inspection(&report.found);
     printed["mesh"] = report.mesh.into();
@@ -30,7 +29,6 @@ pub(super) fn report_json(report: &Report) -> String {
     format!("{printed:#}\n")
 }
 
-/// An inspection as JSON.
 fn inspection(found: &Inspection) -> Value {
     let kinds = &found.zero_area_kinds;
     let open = &found.open_edges;
@@ -87,7 +85,6 @@ fn piece(piece: &OpenEdgePiece) -> Value {
     json!({ "edges": piece.edges, "length_m": piece.length, "example": example(&piece.example) })
 }
 
-/// One occurrence.
 fn example(example: &Occurrence) -> Value {
     let place = example.place.to_array();
     match example.item {

@@ -19,9 +19,7 @@ pub(super) struct Report<'a> {
 
 /// A repaired mesh.
 pub(super) struct Repaired<'a> {
-    /// Its file.
     pub(super) file: &'a Path,
-    /// The repairs.
     pub(super) repairs: Repairs,
     /// The inspection of the repaired mesh.
     pub(super) left: Inspection,

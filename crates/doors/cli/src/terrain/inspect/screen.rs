@@ -14,7 +14,6 @@ const MAX_WIDTH: usize = 100;
 /// Blanks before a list of examples.
 const INDENT: usize = 15;
 
-/// The report as text.
 pub(super) fn screen(report: &Report) -> String {
     let found = &report.found;
     let mut text = String::new();
@@ -59,7 +58,6 @@ struct FaultRow {
     places: String,
 }
 
-/// A row of the list of faults.
 fn row(words: &str, found: &Occurrences) -> FaultRow {
     FaultRow { count: found.count, words: words.into(), places: listed(&found.examples) }
 }
@@ -165,7 +163,6 @@ fn facts(found: &Inspection, polygons: &PolygonFacts) -> Vec<String> {
     facts
 }
 
-/// The repairs, as a list.
 fn repairs_made(repairs: &Repairs) -> String {
     let Repairs { zero_area_faces, duplicate_faces, turned_faces, welded_vertices, unused_vertices, .. } =
         *repairs;

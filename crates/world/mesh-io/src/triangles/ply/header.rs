@@ -56,18 +56,14 @@ pub(super) struct Element<'a> {
     pub(super) properties: Vec<Property<'a>>,
 }
 
-/// Contents of a header.
 #[derive(Debug, PartialEq)]
 pub(super) struct Header<'a> {
     pub(super) format: Format,
     pub(super) elements: Vec<Element<'a>>,
-    /// Bytes of the header.
     pub(super) bytes: usize,
-    /// Lines of the header.
     pub(super) lines: usize,
 }
 
-/// Reads a header.
 pub(super) fn read(file: &[u8]) -> Result<Header<'_>, Fault> {
     // Lines end as the first one does. Otherwise the first byte of a binary file could be taken for the rest of a line.
     let end = if file.get(3) == Some(&b'\r') && file.get(4) != Some(&b'\n') { b'\r' } else { b'\n' };

@@ -10,13 +10,11 @@ pub(super) trait Numbers {
     /// Fewest bytes that a row of an element takes.
     fn least_row_bytes(&self, element: &Element<'_>) -> u64;
 
-    /// Bytes that are left.
     fn bytes_left(&self) -> u64;
 
     /// Place of the last number, for messages.
     fn place(&self) -> String;
 
-    /// Starts a row.
     fn begin_row(&mut self) -> Result<(), Fault>;
 
     /// A number as the nearest double.
@@ -28,14 +26,12 @@ pub(super) trait Numbers {
     /// Skips so many numbers.
     fn skip(&mut self, number: Number, count: u64) -> Result<(), Fault>;
 
-    /// Ends a row.
     fn end_row(&mut self) -> Result<(), Fault>;
 
     /// Refuses anything after the last row.
     fn finish(&mut self) -> Result<(), Fault>;
 }
 
-/// Numbers of a binary file.
 pub(super) struct Binary<'a> {
     file: &'a [u8],
     big_endian: bool,
@@ -46,7 +42,6 @@ pub(super) struct Binary<'a> {
 }
 
 impl<'a> Binary<'a> {
-    /// Numbers from an offset of a file on.
     pub(super) fn new(file: &'a [u8], offset: usize, big_endian: bool) -> Self {
         Self { file, big_endian, next: offset, last: offset }
     }

@@ -25,7 +25,6 @@ use crate::scene_error::SceneIoError;
 /// Maximum number of sets.
 const MAX_SETS: usize = 1000;
 
-/// Keys of one set.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RaysKeys {
@@ -86,7 +85,6 @@ impl Source<'_> {
         Ok((sets, digests))
     }
 
-    /// The name of a set.
     fn set_name<'k>(
         &self,
         index: usize,
