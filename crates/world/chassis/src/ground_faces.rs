@@ -131,6 +131,16 @@ impl GroundFaces {
         Self { origin: mesh.origin(), faces, boxes }
     }
 
+    /// Number of faces that are ground.
+    pub fn len(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// Whether there is no ground at all.
+    pub fn is_empty(&self) -> bool {
+        self.faces.is_empty()
+    }
+
     /// Origin of the mesh, global, metres.
     pub(crate) fn origin(&self) -> DVec3 {
         self.origin
