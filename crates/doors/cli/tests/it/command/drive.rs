@@ -53,7 +53,7 @@ fn both_renderers_drive_identically_and_write_every_file() {
     let folder = folder();
     let said = screen(folder.path(), &["drive", "small.toml", "--both", "-o", "here"], 0);
     assert!(said.contains("Both sides are identical over 7 frames"), "{said}");
-    assert!(said.contains("driven    0.60 m at 0.300 m/s"), "{said}");
+    assert!(said.contains("driven   0.60 m at 0.300 m/s"), "{said}");
     assert!(said.lines().count() <= 40 && said.lines().all(|line| line.chars().count() <= 120), "{said}");
     for file in FILES {
         assert!(folder.path().join("here").join(file).is_file(), "{file} is missing");
