@@ -320,7 +320,7 @@ pub(super) fn explain(
     indices.extend((0..rays.len()).step_by(every(rays.len())));
     indices.sort_unstable();
     indices.dedup();
-    // The wrong ones first: a mistake that is not theirs is given up after a few.
+    // Wrong rays first: a mistake that does not explain them is given up after a few.
     indices.sort_by_key(|index| wrong.binary_search(index).is_err());
     let trial = Trial {
         rays: indices.iter().map(|&index| rays[index]).collect(),

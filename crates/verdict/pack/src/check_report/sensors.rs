@@ -234,7 +234,7 @@ fn pack_words(pack: &PackIdentity, Verified { answers, of, rays }: Verified) -> 
     )
 }
 
-/// Of each sensor the exact ranges, the candidate's beside them, and the difference with its defects marked.
+/// The pictures of each sensor: the exact ranges, the candidate's, and their difference with the defects marked.
 fn pictures(checked: &Checked) -> Result<String, askama::Error> {
     let exact = &checked.exact;
     let sizes: Vec<(u32, u32)> = exact.maps.iter().map(|map| (map.width, map.height)).collect();
