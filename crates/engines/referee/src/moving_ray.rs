@@ -46,14 +46,14 @@ impl MovingRay {
         ];
         let rotation = DMat3::from_cols_array_2d(&rows.map(|row| row.map(|part| part / norm))).transpose();
         let (q, step, height, height_step, plane) = match sensor {
-            MountedSensor::Camera(Mounted { sensor, .. }) => {
+            MountedSensor::Camera(Mounted { sensor, .. }, _) => {
                 let step = sensor.pixel_pitch.map(|pitch| pitch / sensor.focal_length);
                 let along = |index: u32, by: f64, axis: usize| {
                     (f64::from(index) + 0.5 + by - sensor.principal_point[axis]) * step[axis]
                 };
                 ([along(aim.i, aim.dx, 0), along(aim.j, aim.dy, 1)], step, 0.0, 0.0, sensor.focal_length)
             }
-            MountedSensor::Beam(Mounted { sensor, .. }) => {
+            MountedSensor::Beam(Mounted { sensor, .. }, _) => {
                 let half_cells =
                     |index: u32, by: f64, count: f64| 2.0 * f64::from(index) + 1.0 - count + 2.0 * by;
                 let (columns, rows) = (f64::from(sensor.columns), f64::from(sensor.rows));

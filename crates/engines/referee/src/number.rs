@@ -20,6 +20,12 @@ pub(crate) trait Number: Clone {
     /// How the exact value compares with 0, if that is certain.
     fn sign(&self) -> Option<Ordering>;
 
+    /// What was formed in intervals before, if this is the arithmetic of intervals.
+    #[inline]
+    fn of_intervals<const N: usize>(_formed: [Interval; N]) -> Option<[Self; N]> {
+        None
+    }
+
     fn of_integer(value: u32) -> Self {
         Self::of(f64::from(value))
     }
@@ -107,6 +113,11 @@ fn widened(low: f64, high: f64) -> Interval {
 }
 
 impl Number for Interval {
+    #[inline]
+    fn of_intervals<const N: usize>(formed: [Interval; N]) -> Option<[Self; N]> {
+        Some(formed)
+    }
+
     #[inline]
     fn of(value: f64) -> Self {
         Self { low: value, high: value }

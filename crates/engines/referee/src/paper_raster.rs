@@ -51,7 +51,7 @@ impl<'a> PaperRay<'a> {
         let lateral = tolerance.lateral;
         // The cell's centre and the borders of the screen, on the SPP in metres.
         let (x, y, screen) = match sensor {
-            MountedSensor::Camera(Mounted { sensor, .. }) => {
+            MountedSensor::Camera(Mounted { sensor, .. }, _) => {
                 let metres = |cells: Interval, axis: usize| {
                     cells.sub(&of(sensor.principal_point[axis])).mul(&of(sensor.pixel_pitch[axis]))
                 };
@@ -60,7 +60,7 @@ impl<'a> PaperRay<'a> {
                 let borders = [border(0, 0), border(sensor.width, 0), border(0, 1), border(sensor.height, 1)];
                 (centre(aim.i, 0), centre(aim.j, 1), borders)
             }
-            MountedSensor::Beam(Mounted { sensor, .. }) => {
+            MountedSensor::Beam(Mounted { sensor, .. }, _) => {
                 let centre = |index: u32, count: u32, half: Interval| {
                     let half_cells = of(2.0 * f64::from(index) + 1.0 - f64::from(count)).wider(2.0 * lateral);
                     half.mul(&half_cells).over(Interval::of_integer(count))
@@ -72,14 +72,14 @@ impl<'a> PaperRay<'a> {
         };
         let (zero, spp) = (of(0.0), of(spp(sensor)));
         let (start, q) = match sensor {
-            MountedSensor::Camera(_) => ([zero; 3], [x, y, spp]),
-            MountedSensor::Beam(_) => ([zero, y, zero], [x, zero, spp]),
+            MountedSensor::Camera(..) => ([zero; 3], [x, y, spp]),
+            MountedSensor::Beam(..) => ([zero, y, zero], [x, zero, spp]),
         };
         Self {
             sensor,
             with,
             position: tolerance.position,
-            scene_from_sensor: ScaledRotation::of(sensor.pose().rotation),
+            scene_from_sensor: sensor.rotation(),
             start: Vector(start),
             q: Vector(q),
             at: Projected { x, y },
@@ -128,12 +128,12 @@ impl<'a> PaperRay<'a> {
 
     /// Whether sides are drawn straight that are curved in truth.
     fn draws_straight_sides(&self) -> bool {
-        self.with.beam_edges && matches!(self.sensor, MountedSensor::Beam(_))
+        self.with.beam_edges && matches!(self.sensor, MountedSensor::Beam(..))
     }
 
     /// Whether the middle of the sheet decides which side of a face all rows see.
     fn asks_middle(&self) -> bool {
-        self.with.skip_rules && matches!(self.sensor, MountedSensor::Beam(_))
+        self.with.skip_rules && matches!(self.sensor, MountedSensor::Beam(..))
     }
 
     /// Whether a piece of the face that the rules do not skip covers the cell's centre.
@@ -168,7 +168,7 @@ impl<'a> PaperRay<'a> {
         let spp = Interval::of(spp(self.sensor));
         let mut polygon = face.corners.map(|corner| self.in_sensor_frame(corner)).to_vec();
         polygon = clip(&polygon, |p| p.0[2].sub(&spp));
-        if let (true, MountedSensor::Beam(Mounted { sensor, .. })) = (stripe, self.sensor) {
+        if let (true, MountedSensor::Beam(Mounted { sensor, .. }, _)) = (stripe, self.sensor) {
             let half = Interval::of(0.5 * sensor.thickness);
             let (w, g) = (Interval::of(sensor.half_width), Interval::of(sensor.grid_distance));
             let aside = |p: &Vector<Interval>| (w.mul(&p.0[2]), g.mul(&p.0[0]));
@@ -193,8 +193,8 @@ impl<'a> PaperRay<'a> {
         let spp = Interval::of(spp(self.sensor));
         let across = |part: &Interval| spp.mul(part).over(*z);
         match self.sensor {
-            MountedSensor::Camera(_) => Projected { x: across(x), y: across(y) },
-            MountedSensor::Beam(_) => Projected { x: across(x), y: *y },
+            MountedSensor::Camera(..) => Projected { x: across(x), y: across(y) },
+            MountedSensor::Beam(..) => Projected { x: across(x), y: *y },
         }
     }
 
@@ -224,9 +224,9 @@ impl<'a> PaperRay<'a> {
         Kleene::all(piece.iter().map(|point| {
             let [x, y, z] = &point.0;
             let from_start = match self.sensor {
-                MountedSensor::Camera(_) => x.square().add(&y.square()).add(&z.square()),
+                MountedSensor::Camera(..) => x.square().add(&y.square()).add(&z.square()),
                 // From (0, y, 0), where the ray starts.
-                MountedSensor::Beam(_) => x.square().add(&z.square()),
+                MountedSensor::Beam(..) => x.square().add(&z.square()),
             };
             self.holds(&self.project(point)) & Kleene::positive(from_start.sub(&max_range.square()))
         }))
@@ -326,8 +326,8 @@ struct PlaneSides {
 /// Distance of the SPP, metres.
 fn spp(sensor: &MountedSensor) -> f64 {
     match sensor {
-        MountedSensor::Camera(Mounted { sensor, .. }) => sensor.focal_length,
-        MountedSensor::Beam(Mounted { sensor, .. }) => sensor.grid_distance,
+        MountedSensor::Camera(Mounted { sensor, .. }, _) => sensor.focal_length,
+        MountedSensor::Beam(Mounted { sensor, .. }, _) => sensor.grid_distance,
     }
 }
 

@@ -88,7 +88,7 @@ impl Referee<'_> {
         let line = ExactLineOfSight::new(&ray, &face, self.scene.camera());
         // §6 concerns only points that a face hides, or could hide.
         let pixel = line.pixel().filter(|_| line.is_front_seen())?;
-        let camera = MountedSensor::Camera(*self.scene.camera());
+        let camera = MountedSensor::camera(*self.scene.camera());
         let section = Section6::new(&camera, with, pixel, line.centre_to_point().length(), tolerance);
         let occluders = self.occluders(&line);
         let explained: Vec<ExplainedVisibility> = match (visible, occluders.is_empty()) {

@@ -13,7 +13,7 @@
 
 use raypencil_scene::{Beam, Camera, Mounted, Pose, Scene, SensorId};
 
-use crate::number::Number;
+use crate::number::{Interval, Number};
 use crate::vector::{ScaledRotation, Vector};
 
 /// A cell of a sensor and a displacement from its centre, cells.
@@ -34,52 +34,68 @@ pub(crate) struct ScaledRay<T> {
     pub(crate) direction_scale: T,
 }
 
-/// One sensor of a scene with its pose.
+/// One sensor of a scene with its pose, and the pose's rotation in intervals: a search for a margin asks for the rays of one
+/// sensor some thousand times.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum MountedSensor {
-    Camera(Mounted<Camera>),
-    Beam(Mounted<Beam>),
+    Camera(Mounted<Camera>, ScaledRotation<Interval>),
+    Beam(Mounted<Beam>, ScaledRotation<Interval>),
 }
 
 impl MountedSensor {
     /// The sensor, if the scene has it.
     pub(crate) fn of(scene: &Scene, id: SensorId) -> Option<Self> {
         match id {
-            SensorId::Camera => Some(Self::Camera(*scene.camera())),
-            SensorId::Beam(index) => scene.beams().get(index).copied().map(Self::Beam),
+            SensorId::Camera => Some(Self::camera(*scene.camera())),
+            SensorId::Beam(index) => scene.beams().get(index).copied().map(Self::beam),
         }
+    }
+
+    pub(crate) fn camera(mounted: Mounted<Camera>) -> Self {
+        Self::Camera(mounted, ScaledRotation::of(mounted.scene_from_sensor.rotation))
+    }
+
+    pub(crate) fn beam(mounted: Mounted<Beam>) -> Self {
+        Self::Beam(mounted, ScaledRotation::of(mounted.scene_from_sensor.rotation))
+    }
+
+    /// The rotation of the pose.
+    pub(crate) fn rotation<T: Number>(&self) -> ScaledRotation<T> {
+        let (Self::Camera(_, in_intervals) | Self::Beam(_, in_intervals)) = self;
+        let formed = T::of_intervals(in_intervals.parts());
+        formed.map_or_else(|| ScaledRotation::of(self.pose().rotation), ScaledRotation::of_parts)
     }
 
     pub(crate) fn pose(&self) -> Pose {
         match self {
-            Self::Camera(mounted) => mounted.scene_from_sensor,
-            Self::Beam(mounted) => mounted.scene_from_sensor,
+            Self::Camera(mounted, _) => mounted.scene_from_sensor,
+            Self::Beam(mounted, _) => mounted.scene_from_sensor,
         }
     }
 
     /// Columns and rows.
     pub(crate) fn size(&self) -> (u32, u32) {
         match self {
-            Self::Camera(mounted) => (mounted.sensor.width, mounted.sensor.height),
-            Self::Beam(mounted) => (mounted.sensor.columns, mounted.sensor.rows),
+            Self::Camera(mounted, _) => (mounted.sensor.width, mounted.sensor.height),
+            Self::Beam(mounted, _) => (mounted.sensor.columns, mounted.sensor.rows),
         }
     }
 
     /// Maximum range along a ray, metres.
     pub(crate) fn max_range(&self) -> f64 {
         match self {
-            Self::Camera(mounted) => mounted.sensor.max_range,
-            Self::Beam(mounted) => mounted.sensor.max_range,
+            Self::Camera(mounted, _) => mounted.sensor.max_range,
+            Self::Beam(mounted, _) => mounted.sensor.max_range,
         }
     }
 
     /// The ray of an aim, as polynomials.
     pub(crate) fn ray<T: Number>(&self, aim: Aim) -> ScaledRay<T> {
         let pose = self.pose();
-        let rotation = ScaledRotation::<T>::of(pose.rotation);
+        let rotation = self.rotation::<T>();
         let position = Vector::<T>::of(pose.position);
         match self {
-            Self::Camera(Mounted { sensor, .. }) => {
+            Self::Camera(Mounted { sensor, .. }, _) => {
                 let along = |index: u32, displaced: f64, centre: f64, pitch: f64| {
                     let from_centre = T::of_integer(index).add(&T::of(0.5)).add(&T::of(displaced));
                     from_centre.sub(&T::of(centre)).mul(&T::of(pitch))
@@ -96,7 +112,7 @@ impl MountedSensor {
                     direction_scale: rotation.norm_squared,
                 }
             }
-            Self::Beam(Mounted { sensor, .. }) => {
+            Self::Beam(Mounted { sensor, .. }, _) => {
                 // 2k + 1 - n + 2 displaced: the cell's centre in half cells from the middle.
                 let half_cells = |index: u32, displaced: f64, count: u32| {
                     let whole = T::of(2.0 * f64::from(index) + 1.0 - f64::from(count));
@@ -125,14 +141,14 @@ impl MountedSensor {
     /// The change of D by a cell to the right and of O by a cell down, in a beam; 0 in a camera.
     pub(crate) fn steps<T: Number>(&self) -> [Vector<T>; 2] {
         let zero = || T::of(0.0);
-        let rotation = ScaledRotation::<T>::of(self.pose().rotation);
+        let rotation = self.rotation::<T>();
         match self {
-            Self::Beam(Mounted { sensor, .. }) => {
+            Self::Beam(Mounted { sensor, .. }, _) => {
                 let across = T::of(sensor.half_width).doubled();
                 let down = T::of(sensor.thickness).doubled();
                 [[across, zero(), zero()], [zero(), down, zero()]].map(|v| rotation.apply(&Vector(v)))
             }
-            Self::Camera(_) => [(); 2].map(|()| Vector([zero(), zero(), zero()])),
+            Self::Camera(..) => [(); 2].map(|()| Vector([zero(), zero(), zero()])),
         }
     }
 }

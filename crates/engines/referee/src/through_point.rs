@@ -25,21 +25,21 @@ use crate::face::Face;
 use crate::number::{Dyadic, Interval, Number};
 use crate::ray::{Aim, MountedSensor};
 use crate::rounding::quotient;
-use crate::vector::{ScaledRotation, Vector};
+use crate::vector::Vector;
 
 impl MountedSensor {
     /// The displacement of cell (i, j)'s ray that passes through a point, cells, correctly rounded; infinite beyond
     /// the range of f64. `None` if the point lies in the plane through the sensor.
     fn displacement_through(&self, aim: Aim, point: &Vector<Dyadic>) -> Option<[f64; 2]> {
         let pose = self.pose();
-        let rotation = ScaledRotation::<Dyadic>::of(pose.rotation);
+        let rotation = self.rotation::<Dyadic>();
         let Vector([x, y, z]) = rotation.apply_inverse(&point.sub(&Vector::of(pose.position)));
         if z.sign() == Some(Ordering::Equal) {
             return None;
         }
         let of = Dyadic::of;
         Some(match self {
-            Self::Camera(Mounted { sensor, .. }) => {
+            Self::Camera(Mounted { sensor, .. }, _) => {
                 let along = |part: &Dyadic, index: u32, centre: f64, pitch: f64| {
                     let from_centre = Dyadic::of_integer(index).add(&of(0.5)).sub(&of(centre));
                     let wide = of(pitch).mul(&z);
@@ -49,7 +49,7 @@ impl MountedSensor {
                 let ([cx, cy], [px, py]) = (sensor.principal_point, sensor.pixel_pitch);
                 [along(&x, aim.i, cx, px), along(&y, aim.j, cy, py)]
             }
-            Self::Beam(Mounted { sensor, .. }) => {
+            Self::Beam(Mounted { sensor, .. }, _) => {
                 let half_cells = |index: u32, count: u32| of(2.0 * f64::from(index) + 1.0 - f64::from(count));
                 let (columns, rows) = (Dyadic::of_integer(sensor.columns), Dyadic::of_integer(sensor.rows));
                 let wide = of(sensor.half_width).mul(&z);

@@ -60,8 +60,8 @@ pub(crate) fn values(sensor: &MountedSensor, aim: Aim, face: &Face) -> Option<Ro
     }
 
     let spp = match sensor {
-        MountedSensor::Camera(Mounted { sensor, .. }) => sensor.focal_length,
-        MountedSensor::Beam(Mounted { sensor, .. }) => sensor.grid_distance,
+        MountedSensor::Camera(Mounted { sensor, .. }, _) => sensor.focal_length,
+        MountedSensor::Beam(Mounted { sensor, .. }, _) => sensor.grid_distance,
     };
     // Products with two inverses: a division costs four times as much, and no value needs its last bits.
     let one = DoubleDouble::of(1.0);

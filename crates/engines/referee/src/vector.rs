@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3};
 use crate::number::Number;
 
 /// Three coordinates.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Vector<T>(pub(crate) [T; 3]);
 
 impl<T: Number> Vector<T> {
@@ -54,7 +54,7 @@ impl<T: Number> Vector<T> {
 
 /// The rotation p -> q p q* as a matrix: a polynomial of the stored quaternion q. It is q . q times the pose's
 /// rotation.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct ScaledRotation<T> {
     rows: [Vector<T>; 3],
     /// q . q: the factor to the pose's rotation.
@@ -76,6 +76,19 @@ impl<T: Number> ScaledRotation<T> {
             ],
             norm_squared: xx.add(&yy).add(&zz).add(&ww),
         }
+    }
+
+    /// Its nine numbers row by row, and the factor.
+    #[inline]
+    pub(crate) fn of_parts([a, b, c, d, e, f, g, h, i, norm_squared]: [T; 10]) -> Self {
+        Self { rows: [Vector([a, b, c]), Vector([d, e, f]), Vector([g, h, i])], norm_squared }
+    }
+
+    /// The parts of [`Self::of_parts`].
+    #[inline]
+    pub(crate) fn parts(&self) -> [T; 10] {
+        let [[a, b, c], [d, e, f], [g, h, i]] = self.rows.clone().map(|row| row.0);
+        [a, b, c, d, e, f, g, h, i, self.norm_squared.clone()]
     }
 
     #[inline]

@@ -33,8 +33,8 @@ fn sensors(random: &mut SplitMix64) -> [MountedSensor; 2] {
         profile: Profile::Paper,
     };
     [
-        MountedSensor::Camera(Mounted { scene_from_sensor: pose, sensor: camera }),
-        MountedSensor::Beam(Mounted { scene_from_sensor: pose, sensor: beam }),
+        MountedSensor::camera(Mounted { scene_from_sensor: pose, sensor: camera }),
+        MountedSensor::beam(Mounted { scene_from_sensor: pose, sensor: beam }),
     ]
 }
 

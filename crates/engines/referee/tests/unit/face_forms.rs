@@ -31,7 +31,7 @@ fn sensor(random: &mut SplitMix64) -> MountedSensor {
             lens: raypencil_scene::Lens::CLEAR,
             max_range: 20.0,
         };
-        return MountedSensor::Camera(Mounted { scene_from_sensor, sensor });
+        return MountedSensor::camera(Mounted { scene_from_sensor, sensor });
     }
     let sensor = Beam {
         columns: 65,
@@ -44,7 +44,7 @@ fn sensor(random: &mut SplitMix64) -> MountedSensor {
         wavelength: 8e-7,
         profile: Profile::Paper,
     };
-    MountedSensor::Beam(Mounted { scene_from_sensor, sensor })
+    MountedSensor::beam(Mounted { scene_from_sensor, sensor })
 }
 
 /// A point on a ray: anywhere, at the end of the range, or on the SPP.

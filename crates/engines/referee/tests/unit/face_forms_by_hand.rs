@@ -27,7 +27,7 @@ fn camera(position: DVec3) -> MountedSensor {
         lens: Lens::CLEAR,
         max_range: 16.0,
     };
-    MountedSensor::Camera(Mounted { scene_from_sensor: Pose { position, rotation: DQuat::IDENTITY }, sensor })
+    MountedSensor::camera(Mounted { scene_from_sensor: Pose { position, rotation: DQuat::IDENTITY }, sensor })
 }
 
 /// g = 1/2 m, p = (1/4, 0), rows 1/2 m apart, looking along z from `position`. Pencil (2, 3) has q = (1/8, 0, 1) and
@@ -44,7 +44,7 @@ fn beam(position: DVec3) -> MountedSensor {
         wavelength: 8e-7,
         profile: Profile::Paper,
     };
-    MountedSensor::Beam(Mounted { scene_from_sensor: Pose { position, rotation: DQuat::IDENTITY }, sensor })
+    MountedSensor::beam(Mounted { scene_from_sensor: Pose { position, rotation: DQuat::IDENTITY }, sensor })
 }
 
 /// A triangle 4 to 6 m ahead that shows its front.
@@ -118,8 +118,8 @@ fn a_ray_moves_as_its_cells_do() {
 fn errors_and_bends_are_those_of_the_page() {
     for sensor in [camera(DVec3::ZERO), beam(DVec3::ZERO)] {
         let at = match sensor {
-            MountedSensor::Camera(_) => aim(2, 1),
-            MountedSensor::Beam(_) => aim(2, 3),
+            MountedSensor::Camera(..) => aim(2, 1),
+            MountedSensor::Beam(..) => aim(2, 3),
         };
         let ray = MovingRay::new(&sensor, at);
         let (height, h) = (ray.height, ray.height_step);

@@ -57,12 +57,12 @@ fn through_a_point_by_hand() {
     // (2, 1.5, 7) is (1, -1/2, 4) before the camera: x/z = 1/4, y/z = -1/8, that is pixels 3 and 1.5; the middle of
     // pixel (2, 2) is (2.5, 2.5).
     let aim = Aim { i: 2, j: 2, dx: 0.0, dy: 0.0 };
-    let sensor = MountedSensor::Camera(camera());
+    let sensor = MountedSensor::camera(camera());
     assert_eq!(sensor.displacement_through(aim, &exactly(2.0, 1.5, 7.0)), Some([0.5, -1.0]));
     assert_eq!(sensor.displacement_through(aim, &exactly(2.0, 1.5, 3.0)), None);
     // A beam of one cell at the same place, 2 w = 1/2 wide at g = 1 and T = 1/8 thick: x/z = 1/4 is half a cell, y =
     // -1/2 is 4 cells up.
-    let beam = MountedSensor::Beam(beam(camera().scene_from_sensor, 0.25, 0.125, 1.0));
+    let beam = MountedSensor::beam(beam(camera().scene_from_sensor, 0.25, 0.125, 1.0));
     let aim = Aim { i: 0, j: 0, dx: 0.0, dy: 0.0 };
     assert_eq!(beam.displacement_through(aim, &exactly(2.0, 1.5, 7.0)), Some([0.5, -4.0]));
 }

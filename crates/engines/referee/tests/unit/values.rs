@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use raypencil_scene::{Camera, Lens, Pose};
 
 fn camera(position: [f64; 3], rotation: [f64; 4], centre: f64) -> MountedSensor {
-    MountedSensor::Camera(Mounted {
+    MountedSensor::camera(Mounted {
         scene_from_sensor: Pose {
             position: DVec3::from_array(position),
             rotation: DQuat::from_array(rotation),
