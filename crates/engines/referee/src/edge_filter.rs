@@ -71,18 +71,12 @@ impl EdgeFilter {
         }
     }
 
-    /// Where the ray passes a face with these corners.
+    /// Where the ray passes a face with these corners, which shows its front.
     #[inline]
     pub(crate) fn passes(&self, corners: [DVec3; 3]) -> Passes {
-        let offsets = corners.map(|corner| corner - self.origin);
-        let [of_origin, of_direction] = self.errors;
         let mut passes = Passes::Inside;
         for k in 0..3 {
-            let edge = corners[(k + 1) % 3] - corners[k];
-            let side = self.direction.dot(offsets[k].cross(edge));
-            let (far, long) = (offsets[k].abs().max_element(), edge.abs().max_element());
-            let of_offset = of_origin + 16.0 * f64::EPSILON * far;
-            let bound = 8.0 * long * (self.size * of_offset + of_direction * far) + UNDERFLOW;
+            let [side, bound] = self.side(corners, k);
             if side > bound {
                 return Passes::Outside;
             }
@@ -92,4 +86,28 @@ impl EdgeFilter {
         }
         passes
     }
+
+    /// Whether the line certainly passes beside a face with these corners, whichever side that shows: the sides of two of
+    /// its edges differ.
+    #[inline]
+    pub(crate) fn passes_beside(&self, corners: [DVec3; 3]) -> bool {
+        let sides = [0, 1, 2].map(|k| self.side(corners, k));
+        sides.iter().any(|[side, bound]| side > bound) && sides.iter().any(|[side, bound]| *side < -bound)
+    }
+
+    /// F of the edge from corner `k`, and its bound.
+    #[inline]
+    fn side(&self, corners: [DVec3; 3], k: usize) -> [f64; 2] {
+        let [of_origin, of_direction] = self.errors;
+        let offset = corners[k] - self.origin;
+        let edge = corners[(k + 1) % 3] - corners[k];
+        let side = self.direction.dot(offset.cross(edge));
+        let (far, long) = (offset.abs().max_element(), edge.abs().max_element());
+        let of_offset = of_origin + 16.0 * f64::EPSILON * far;
+        [side, 8.0 * long * (self.size * of_offset + of_direction * far) + UNDERFLOW]
+    }
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/edge_filter.rs"]
+mod tests;

@@ -30,7 +30,8 @@ use std::cmp::Ordering;
 use glam::DVec3;
 use raypencil_scene::{Camera, Mounted, Pixel};
 
-use crate::bvh::RayBundle;
+use crate::bvh::{InBox, RayBundle};
+use crate::edge_filter::EdgeFilter;
 use crate::face::{Crossing, ExactRay, Face};
 use crate::number::{Dyadic, Interval, Number};
 use crate::ray::{Aim, MountedSensor, ScaledRay};
@@ -158,6 +159,7 @@ pub(crate) struct ExactLineOfSight<'a> {
     is_back: bool,
     fast: LineOfSight<Interval>,
     exact: OnceCell<LineOfSight<Dyadic>>,
+    filter: EdgeFilter,
 }
 
 impl<'a> ExactLineOfSight<'a> {
@@ -165,7 +167,13 @@ impl<'a> ExactLineOfSight<'a> {
     pub(crate) fn new(ray: &'a ExactRay<'a>, face: &'a Face, camera: &'a Mounted<Camera>) -> Self {
         let is_back = face.shows_back_to(ray);
         let fast = LineOfSight::new(ray.fast(), face, camera, is_back);
-        Self { ray, face, camera, is_back, fast, exact: OnceCell::new() }
+        let filter = EdgeFilter::new(&ScaledRay {
+            origin: fast.centre.clone(),
+            origin_scale: Interval::of(1.0),
+            direction: fast.direction.clone(),
+            direction_scale: fast.scale,
+        });
+        Self { ray, face, camera, is_back, fast, exact: OnceCell::new(), filter }
     }
 
     /// The line without rounding.
@@ -260,7 +268,7 @@ impl<'a> ExactLineOfSight<'a> {
     /// Whether `other` meets the segment from the point to the image plane.
     pub(crate) fn is_hidden_by(&self, other: &Face) -> bool {
         // The point lies in its own plane, so the same triangle again never lies before it.
-        if other.corners == self.face.corners {
+        if other.corners == self.face.corners || self.filter.passes_beside(other.corners()) {
             return false;
         }
         let facing = self.sign(&Facing(other));

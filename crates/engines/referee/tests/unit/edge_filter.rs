@@ -1,0 +1,86 @@
+//! The sides of edges in plain f64 against the same in exact arithmetic.
+
+use std::cmp::Ordering;
+
+use super::*;
+use crate::number::{Dyadic, Number};
+use crate::splitmix::SplitMix64;
+use crate::vector::Vector;
+
+/// A line from a point of f64 along a direction of f64, and a face of f32.
+struct Case {
+    origin: DVec3,
+    direction: DVec3,
+    corners: [DVec3; 3],
+}
+
+impl Case {
+    /// A line through the middle of an edge, beside it by so much of the edge's length.
+    fn beside_an_edge(random: &mut SplitMix64, by: f64) -> Self {
+        let mut point = || DVec3::new(random.part(), random.part(), random.part());
+        let corners = [point(), point(), point()].map(|corner| corner.as_vec3().as_dvec3());
+        let [a, b, c] = corners;
+        let origin = 4.0 * point();
+        let middle = 0.5 * a + 0.5 * b;
+        Self { origin, direction: middle + by * (middle - c) - origin, corners }
+    }
+
+    fn filter(&self) -> EdgeFilter {
+        let of = |v: DVec3| Vector::<Interval>::of(v);
+        let one = Interval::of(1.0);
+        EdgeFilter::new(&ScaledRay {
+            origin: of(self.origin),
+            origin_scale: one,
+            direction: of(self.direction),
+            direction_scale: one,
+        })
+    }
+
+    /// The sign of F of each edge, exactly.
+    fn signs(&self) -> [Ordering; 3] {
+        let of = |v: DVec3| Vector::<Dyadic>::of(v);
+        [0, 1, 2].map(|k| {
+            let (a, b) = (of(self.corners[k]), of(self.corners[(k + 1) % 3]));
+            let side = a.sub(&of(self.origin)).cross(&b.sub(&a));
+            of(self.direction).dot(&side).sign().expect("an exact sign")
+        })
+    }
+}
+
+/// Within rounding of an edge the sums themselves have wrong signs, so a bound that is too small says what is not so.
+#[test]
+fn what_the_filter_says_of_lines_within_rounding_of_an_edge_is_so() {
+    let mut random = SplitMix64(11);
+    let (mut beside, mut wrong_sums) = (0, 0);
+    for _ in 0..20_000 {
+        let size = 2.0_f64.powi(-48 - random.below(10) as i32);
+        let size = size * random.part();
+        let case = Case::beside_an_edge(&mut random, size);
+        let (filter, signs) = (case.filter(), case.signs());
+        let is_beside = signs.contains(&Ordering::Less) && signs.contains(&Ordering::Greater);
+        match filter.passes(case.corners) {
+            Passes::Outside => assert!(signs.contains(&Ordering::Greater)),
+            Passes::Inside => assert_eq!(signs, [Ordering::Less; 3]),
+            Passes::Near => {}
+        }
+        if filter.passes_beside(case.corners) {
+            assert!(is_beside, "{signs:?}");
+            beside += 1;
+        }
+        wrong_sums +=
+            (0..3).filter(|&k| filter.side(case.corners, k)[0].partial_cmp(&0.0) != Some(signs[k])).count();
+    }
+    assert!(beside > 1000 && wrong_sums > 1000, "{beside} {wrong_sums}");
+}
+
+/// A bound that is too wide is no mistake, but leaves all work to slower arithmetic.
+#[test]
+fn lines_a_trillionth_of_an_edge_beside_it_are_decided() {
+    let mut random = SplitMix64(12);
+    let mut decided = 0;
+    for _ in 0..2_000 {
+        let case = Case::beside_an_edge(&mut random, 1e-12);
+        decided += u32::from(case.filter().passes_beside(case.corners));
+    }
+    assert!(decided > 1900, "{decided}");
+}
