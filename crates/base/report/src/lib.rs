@@ -51,7 +51,7 @@ mod version;
 pub use axes::{TICK_LENGTH_PX, draw_axes};
 pub use colour::Colour;
 pub use defect_list::{DefectGroup, DefectLine, defect_list};
-pub use document::{Block, Column, Document, Grid, Outcome, Room, markdown_code, markdown_text};
+pub use document::{Block, Column, Count, Document, Grid, Outcome, Room, markdown_code, markdown_text};
 pub use drawing::{Anchor, Drawing, INK, LETTERS, Mark, SOFT};
 pub use junit::{JunitCase, JunitReport, JunitSuite};
 pub use maps::{MapPair, SensorPlots};

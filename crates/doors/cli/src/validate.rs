@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use raypencil::Progress as _;
-use raypencil::harness::{one_screen, summary_json, validate as run, whole_screen, write_validation};
+use raypencil::harness::{one_screen, validate as run, whole_screen, write_validation};
 
 use raypencil::io::OutputFolder;
 
@@ -37,7 +37,7 @@ pub(crate) fn validate(command: &Validate, json: bool, registry: &Registry) -> R
     output.finish()?;
     drop(spinner);
     if json {
-        say(&summary_json(&validation));
+        say(&validation.document().json());
     } else {
         let screen = if is_terminal() { one_screen } else { whole_screen };
         say(&screen(&validation, Some(&folder)));

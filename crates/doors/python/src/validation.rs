@@ -5,9 +5,7 @@ use std::path::PathBuf;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use raypencil::Progress;
-use raypencil::harness::{
-    Candidate, Validation, report_html, summary_json, validate as run, whole_screen, write_validation,
-};
+use raypencil::harness::{Candidate, Validation, validate as run, whole_screen, write_validation};
 use raypencil::judge::JudgeShare;
 use raypencil::pack::Declarations;
 
@@ -34,7 +32,7 @@ impl ValidationCore {
 
     /// The document of `summary.json`.
     fn json(&self, py: Python<'_>) -> String {
-        py.detach(|| summary_json(&self.validation))
+        py.detach(|| self.validation.document().json())
     }
 
     /// The screen of the command.
@@ -44,7 +42,8 @@ impl ValidationCore {
 
     /// The page of `report.html`.
     fn report(&self, py: Python<'_>) -> PyResult<String> {
-        py.detach(|| report_html(&self.validation)).map_err(|error| Failure::from(error).into_exception(py))
+        py.detach(|| self.validation.document_with_pictures()?.page())
+            .map_err(|error| Failure::from(error).into_exception(py))
     }
 
     /// The names of the renderers.

@@ -79,6 +79,8 @@ pub fn campaign_document(merged: &Merged, has: impl Fn(&str) -> bool) -> Documen
         outcome,
         headline,
         remarks: explanation.into_iter().map(String::from).collect(),
+        explanation: Vec::new(),
+        counts: Vec::new(),
         facts,
         blocks: vec![
             text("", warnings(merged), Room::Everywhere),

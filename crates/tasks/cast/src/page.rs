@@ -125,6 +125,8 @@ impl CastPage<'_> {
             outcome,
             headline,
             remarks: vec![format!("{}.", counts_text(self.answers))],
+            explanation: Vec::new(),
+            counts: Vec::new(),
             facts: self.facts.to_vec(),
             blocks: vec![
                 text(notes),

@@ -41,6 +41,8 @@ pub fn drive_document(job: &DriveJob, run: &DriveRun) -> Document {
         },
         headline: headline(run),
         remarks: Vec::new(),
+        explanation: Vec::new(),
+        counts: Vec::new(),
         facts: vec![("Command", format!("raypencil drive {}", job.arguments))],
         blocks: vec![
             Block::Table { title: "The drive", grid: told },

@@ -35,7 +35,7 @@
 //! // 32 x 32 + 2 (32 x 2) = 1152 rays, each compared once: there is one pair.
 //! assert_eq!(validation.counts().compared, 1152);
 //! assert!(validation.passes());
-//! assert!(one_screen(&validation, None).ends_with("All 1,152 rays agree.\n"));
+//! assert!(one_screen(&validation, None).ends_with("\n✓ All 1,152 rays agree.\n"));
 //! # Ok::<(), raypencil_scene::SceneError>(())
 //! ```
 //!
@@ -60,18 +60,19 @@
 //! any_pack             a candidate against a pack of any form
 //! validation           all results of one scene
 //! run                  `validate`: from a scene to its validation
-//! output/table         the table of quantities and classes
+//! output/table         the tables of quantities, sensors, causes and times
 //! output/verdict       the verdict in words
-//! output/candidates    the scoreboard, ready to be printed
-//! output/formats       maps as NPY, NPZ, Zarr and single EXRs
+//! output/candidates    the scoreboard as tables
 //! output/panel         the scoreboard for programs
 //! output/plots, light  range maps, differences and flux as pictures
-//! output/screen        one terminal screen
-//! output/summary       summary.json
-//! output/junit         junit.xml
-//! output/markdown      summary.md
-//! output/report        report.html
-//! output/folder        the folder with all of these and the maps
+//! output/pictures      all of them, section by section
+//! output/explorer      the part of the page that answers when asked
+//! output/screen        the lines of a screen, which has 40 of them on a terminal
+//! output/summary       the keys of summary.json
+//! output/junit         the test cases
+//! output/document      all of these as the document that every report prints
+//! output/formats       maps as NPY, NPZ, Zarr and single EXRs
+//! output/folder        the folder with the maps and every report
 //! ```
 
 mod any_pack;
@@ -103,11 +104,7 @@ pub use interestingness::{first_interesting_ray, is_interesting_in_class};
 pub use monte_carlo::{ImageComparison, Z_TEST_LIMITS, ZTestLimits, compare_images, expected_images};
 pub use output::folder::{HarnessError, Written, write_maps, write_validation};
 pub use output::formats::{MapFormat, arrays as map_arrays, write_maps_as};
-pub use output::junit::junit as junit_xml;
-pub use output::markdown::markdown as summary_markdown;
-pub use output::report::html as report_html;
 pub use output::screen::{one_screen, whole_screen};
-pub use output::summary::summary_json;
 pub use probe::{NoSuchRay, Probe, ProbedAnswer, ProbedCandidate, ProbedReturn, probe};
 pub use radiance::{RadianceComparison, compare_radiance};
 pub use ray_set_packs::{CheckedRaySet, PackedRaySet, write_pack_with_ray_sets};

@@ -94,6 +94,8 @@ pub fn sweep_document(
         outcome: if finished.passes() { Verdict::Agrees } else { Verdict::Fails },
         headline,
         remarks: Vec::new(),
+        explanation: Vec::new(),
+        counts: Vec::new(),
         facts: vec![
             ("Scene", scene.clone()),
             ("Task", task.word().to_string()),

@@ -57,6 +57,8 @@ pub fn diff_document(difference: &Difference, sides: &Sides) -> Document {
         outcome: if difference.passes() { Outcome::Agrees } else { Outcome::Fails },
         headline: format!("{}.", headline(difference)),
         remarks: vec![format!("Allowed: {}.", allowed(&difference.thresholds))],
+        explanation: Vec::new(),
+        counts: Vec::new(),
         facts: vec![("A", a.to_string()), ("B", b.to_string())],
         blocks: vec![
             Block::Table { title: "Every channel", grid: grid(difference) },

@@ -167,7 +167,7 @@ fn names_stay_text() {
     let mut written = raypencil_tests::fixtures::agreeing();
     written.subject.name = "<script>document.title = 'owned'</script><img src=x onerror=alert(1)>".into();
     written.rendered[0].name = "scan<b>line</b>".into();
-    let html = raypencil::harness::report_html(&written).expect("a page");
+    let html = written.document_with_pictures().and_then(|document| document.page()).expect("a page");
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("report.html");
     std::fs::write(&file, html).expect("a file");

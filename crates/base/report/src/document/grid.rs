@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crate::table::{Align, Table};
 
-use super::room::{Room, is_shown};
+use super::room::{Medium, Room, is_shown};
 
 /// A column.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -96,16 +96,16 @@ impl Grid {
         self.rows.push(Row { cells, fails, room });
     }
 
-    /// The rows of a screen, or of a page.
-    pub(super) fn rows(&self, on_screen: bool) -> impl Iterator<Item = &Row> {
-        self.rows.iter().filter(move |row| is_shown(row.room, on_screen))
+    /// The rows that a medium shows.
+    pub(super) fn rows(&self, medium: Medium) -> impl Iterator<Item = &Row> {
+        self.rows.iter().filter(move |row| is_shown(row.room, medium))
     }
 
-    /// The columns that have an entry, with their indices; those of a screen, or of a page.
-    pub(super) fn shown(&self, on_screen: bool) -> Vec<(usize, &Column)> {
-        let has_entry = |index: usize| self.rows(on_screen).any(|row| !row.cells[index].is_empty());
+    /// The columns that have an entry, with their indices; those that a medium shows.
+    pub(super) fn shown(&self, medium: Medium) -> Vec<(usize, &Column)> {
+        let has_entry = |index: usize| self.rows(medium).any(|row| !row.cells[index].is_empty());
         let columns = self.columns.iter().enumerate();
-        columns.filter(|(index, column)| has_entry(*index) && is_shown(column.room, on_screen)).collect()
+        columns.filter(|(index, column)| has_entry(*index) && is_shown(column.room, medium)).collect()
     }
 
     /// The table for a screen.
@@ -115,12 +115,12 @@ impl Grid {
 
     /// The same with other names of rows.
     pub(super) fn to_table_with(&self, named: impl Fn(&str) -> String) -> Table {
-        let shown = self.shown(true);
+        let shown = self.shown(Medium::Screen);
         let mut table = Table::new(shown.iter().map(|(_, column)| column.align));
         if has_heads(&shown) {
             table.row(shown.iter().map(|(_, column)| column.head.as_ref()));
         }
-        for row in self.rows(true) {
+        for row in self.rows(Medium::Screen) {
             table.row(shown.iter().map(|(index, _)| match row.cells[*index].as_str() {
                 name if *index == 0 => named(name),
                 "" => "-".into(),

@@ -8,7 +8,7 @@ use crate::version::VERSION;
 
 use super::grid::{Column, Grid};
 use super::model::{Block, Document};
-use super::room::is_shown;
+use super::room::{Medium, is_shown};
 
 /// Maximum number of findings that are listed.
 const MAX_LISTED: usize = 10;
@@ -22,16 +22,21 @@ impl Document {
 
 fn markdown(document: &Document) -> String {
     let mut text = format!("### {}\n", markdown_text(&document.signed()));
-    for remark in &document.remarks {
+    for remark in document.remarks.iter().chain(&document.explanation) {
         let _ = write!(text, "\n{}\n", markdown_text(remark));
     }
     let _ = write!(text, "\nraypencil {VERSION}: {}\n\n", markdown_text(document.asked()));
     for (name, value) in &document.facts {
         let _ = writeln!(text, "* {name}: {}", markdown_code(value));
     }
+    if !document.counts.is_empty() {
+        let counts: Vec<String> =
+            document.counts.iter().map(|count| format!("{} {}", count.number, count.name)).collect();
+        let _ = writeln!(text, "* Rays: {}", markdown_text(&counts.join(", ")));
+    }
     for block in &document.blocks {
         match block {
-            Block::Text { title, lines, room } if is_shown(*room, false) && !lines.is_empty() => {
+            Block::Text { title, lines, room } if is_shown(*room, Medium::Markdown) && !lines.is_empty() => {
                 if !title.is_empty() {
                     let _ = write!(text, "\n**{title}**\n");
                 }
@@ -40,7 +45,7 @@ fn markdown(document: &Document) -> String {
                     let _ = write!(text, "\n{}\n", markdown_text(line.trim_start()));
                 });
             }
-            Block::Table { title, grid } if grid.rows(false).next().is_some() => {
+            Block::Table { title, grid } if grid.rows(Medium::Markdown).next().is_some() => {
                 let _ = write!(text, "\n**{title}**\n\n{}", table(grid));
             }
             Block::Findings { title, groups, .. } => {
@@ -60,7 +65,7 @@ fn markdown(document: &Document) -> String {
                         write!(text, "\n{}: {}\n", markdown_text(&group.title), markdown_text(&group.more));
                 }
             }
-            Block::Text { .. } | Block::Table { .. } | Block::Pictures { .. } => {}
+            Block::Text { .. } | Block::Table { .. } | Block::Folded { .. } | Block::Pictures { .. } => {}
         }
     }
     text
@@ -76,12 +81,12 @@ fn finding(line: &DefectLine) -> String {
 }
 
 fn table(grid: &Grid) -> String {
-    let shown = grid.shown(false);
+    let shown = grid.shown(Medium::Markdown);
     let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
     let mut text = line(shown.iter().map(|(_, column)| markdown_text(&column.head)).collect());
     let rule = |align: Align| if align == Align::Left { "---" } else { "---:" }.to_string();
     text += &line(shown.iter().map(|(_, column)| rule(column.align)).collect());
-    for row in grid.rows(false) {
+    for row in grid.rows(Medium::Markdown) {
         let cell = |(index, column): &(usize, &Column)| match row.cells[*index].as_str() {
             code if column.is_code && !code.is_empty() => markdown_code(code).replace('|', "\\|"),
             words => markdown_text(words),

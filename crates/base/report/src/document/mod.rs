@@ -21,5 +21,5 @@ mod screen;
 
 pub use grid::{Column, Grid};
 pub use markdown::{markdown_code, markdown_text};
-pub use model::{Block, Document, Outcome};
+pub use model::{Block, Count, Document, Outcome};
 pub use room::Room;

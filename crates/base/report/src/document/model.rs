@@ -64,6 +64,13 @@ pub enum Block {
         /// The rows.
         grid: Grid,
     },
+    /// A table that a page shows when its title is opened, and that is shown nowhere else.
+    Folded {
+        /// Title on the page.
+        title: &'static str,
+        /// The rows.
+        grid: Grid,
+    },
     /// What is wrong, one by one.
     Findings {
         /// Title on pages and in Markdown.
@@ -84,6 +91,19 @@ pub enum Block {
     },
 }
 
+/// A number with its name, which pages show large and Markdown in one line.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Count {
+    /// The number.
+    pub number: String,
+    /// Its name.
+    pub name: &'static str,
+    /// What it counts.
+    pub meaning: &'static str,
+    /// Whether it counts what is wrong.
+    pub is_bad: bool,
+}
+
 /// What a command found.
 ///
 /// ```
@@ -97,6 +117,8 @@ pub enum Block {
 ///     outcome: Outcome::Agrees,
 ///     headline: "128 rays agree.".into(),
 ///     remarks: vec![],
+///     explanation: vec![],
+///     counts: vec![],
 ///     facts: vec![("Candidate", "mine".into())],
 ///     blocks: vec![Block::Text { title: "", lines: vec!["Depths are not given.".into()], room: Room::Everywhere }],
 ///     suites: vec![suite],
@@ -125,6 +147,10 @@ pub struct Document {
     pub headline: String,
     /// Sentences that belong to the verdict, such as the mistake that explains it.
     pub remarks: Vec<String>,
+    /// Further sentences below the verdict, on pages and in Markdown.
+    pub explanation: Vec<String>,
+    /// Numbers that are seen first; a screen shows none of them.
+    pub counts: Vec<Count>,
     /// Names and values of what was asked.
     pub facts: Vec<(&'static str, String)>,
     /// The parts, in order.

@@ -9,7 +9,7 @@ use crate::version::VERSION;
 
 use super::grid::{Grid, has_heads};
 use super::model::{Block, Document};
-use super::room::is_shown;
+use super::room::{Medium, is_shown};
 
 #[derive(Template)]
 #[template(path = "document.html")]
@@ -25,7 +25,7 @@ struct Page<'a> {
 /// A block, ready for the template.
 enum Part<'a> {
     Text { title: &'static str, lines: &'a [String] },
-    Table { title: &'static str, heads: Vec<Head<'a>>, rows: Vec<RowOfPage<'a>> },
+    Table { title: &'static str, folded: bool, heads: Vec<Head<'a>>, rows: Vec<RowOfPage<'a>> },
     Findings { title: &'static str, html: String },
     Pictures { title: &'static str, html: &'a str, stays: bool },
 }
@@ -76,21 +76,26 @@ fn page(document: &Document) -> Result<String, askama::Error> {
 /// A block, or `None` if it has nothing to show.
 fn part(block: &Block) -> Result<Option<Part<'_>>, askama::Error> {
     Ok(match block {
-        Block::Text { title, lines, room } if is_shown(*room, false) && !lines.is_empty() => {
+        Block::Text { title, lines, room } if is_shown(*room, Medium::Page) && !lines.is_empty() => {
             Some(Part::Text { title, lines })
         }
-        Block::Table { title, grid } if grid.rows(false).next().is_some() => Some(table(title, grid)),
+        Block::Table { title, grid } if grid.rows(Medium::Page).next().is_some() => {
+            Some(table(title, grid, false))
+        }
+        Block::Folded { title, grid } if grid.rows(Medium::Page).next().is_some() => {
+            Some(table(title, grid, true))
+        }
         Block::Findings { title, groups, .. } => Some(Part::Findings { title, html: defect_list(groups)? }),
         Block::Pictures { title, html, stays } if !html.is_empty() => {
             Some(Part::Pictures { title, html, stays: *stays })
         }
-        Block::Text { .. } | Block::Table { .. } | Block::Pictures { .. } => None,
+        Block::Text { .. } | Block::Table { .. } | Block::Folded { .. } | Block::Pictures { .. } => None,
     })
 }
 
-fn table<'a>(title: &'static str, grid: &'a Grid) -> Part<'a> {
-    let shown = grid.shown(false);
-    let rows = grid.rows(false).map(|row| RowOfPage {
+fn table<'a>(title: &'static str, grid: &'a Grid, folded: bool) -> Part<'a> {
+    let shown = grid.shown(Medium::Page);
+    let rows = grid.rows(Medium::Page).map(|row| RowOfPage {
         fails: row.fails,
         first: &row.cells[0],
         cells: shown
@@ -106,6 +111,7 @@ fn table<'a>(title: &'static str, grid: &'a Grid) -> Part<'a> {
     });
     Part::Table {
         title,
+        folded,
         rows: rows.collect(),
         heads: shown
             .iter()

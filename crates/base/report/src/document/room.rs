@@ -9,13 +9,24 @@ pub enum Room {
     Screen,
     /// On pages and in Markdown, where there is room.
     Wide,
+    /// On pages only.
+    Page,
 }
 
-/// Whether a screen, or a page, shows what has this room.
-pub(super) fn is_shown(room: Room, on_screen: bool) -> bool {
+/// What a document is printed on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Medium {
+    Screen,
+    Page,
+    Markdown,
+}
+
+/// Whether what has this room is shown there.
+pub(super) fn is_shown(room: Room, medium: Medium) -> bool {
     match room {
         Room::Everywhere => true,
-        Room::Screen => on_screen,
-        Room::Wide => !on_screen,
+        Room::Screen => medium == Medium::Screen,
+        Room::Wide => medium != Medium::Screen,
+        Room::Page => medium == Medium::Page,
     }
 }

@@ -6,7 +6,7 @@ use crate::version::VERSION;
 
 use super::grid::Grid;
 use super::model::{Block, Document};
-use super::room::is_shown;
+use super::room::{Medium, is_shown};
 
 /// How far the later lines of a sentence stand to the right.
 const INDENT: &str = "    ";
@@ -44,10 +44,10 @@ fn screen(document: &Document, chars: usize) -> String {
 
 fn of_block(block: &Block, chars: usize) -> String {
     match block {
-        Block::Text { lines, room, .. } if is_shown(*room, true) => {
+        Block::Text { lines, room, .. } if is_shown(*room, Medium::Screen) => {
             lines.iter().map(|line| wrapped(line, chars)).collect()
         }
-        Block::Table { grid, .. } if grid.rows(true).next().is_some() => table(grid, chars),
+        Block::Table { grid, .. } if grid.rows(Medium::Screen).next().is_some() => table(grid, chars),
         Block::Findings { worst, .. } => {
             let mut text = String::new();
             for one in worst {
@@ -59,20 +59,27 @@ fn of_block(block: &Block, chars: usize) -> String {
             }
             text
         }
-        Block::Text { .. } | Block::Table { .. } | Block::Pictures { .. } => String::new(),
+        Block::Text { .. } | Block::Table { .. } | Block::Folded { .. } | Block::Pictures { .. } => {
+            String::new()
+        }
     }
 }
 
-/// The table; the names of its rows are shortened where it would be too wide.
+/// The table. Where it would be too wide, its columns are less apart; if that is not enough, the names of its rows are
+/// shortened.
 fn table(grid: &Grid, chars: usize) -> String {
     let whole = grid.to_table();
+    if whole.width() <= chars {
+        return whole.to_string();
+    }
+    let whole = whole.with_gap(1);
     let too_wide = whole.width().saturating_sub(chars);
     if too_wide == 0 {
         return whole.to_string();
     }
-    let longest = grid.rows(true).map(|row| row.cells[0].chars().count()).max().unwrap_or(0);
+    let longest = grid.rows(Medium::Screen).map(|row| row.cells[0].chars().count()).max().unwrap_or(0);
     let left = longest.saturating_sub(too_wide).max(1);
-    grid.to_table_with(|name| without_beginning(name, left)).to_string()
+    grid.to_table_with(|name| without_beginning(name, left)).with_gap(1).to_string()
 }
 
 /// The last `chars` characters of a text, since the end of a path tells more than its beginning.

@@ -36,6 +36,8 @@ fn document() -> Document {
         outcome: Outcome::Fails,
         headline: "1 of 1,024 rays is wrong.".into(),
         remarks: vec!["Why: rows are reversed.".into()],
+        explanation: Vec::new(),
+        counts: Vec::new(),
         facts: vec![("Candidate", EVIL.into())],
         blocks: vec![
             Block::Table { title: "Every quantity", grid },

@@ -1,15 +1,16 @@
-//! The scoreboard, ready to be printed: raypencil's renderers beside candidates, for the page and the screen.
+//! The scoreboard as tables and lines: raypencil's renderers beside candidates.
 
 use std::collections::BTreeMap;
 
 use raypencil_files::Storage;
-use raypencil_judge::{Check, Class, Item, ItemTally, Largest, Recorded, name_of, unit_of};
+use raypencil_judge::{Check, Class, Item, ItemTally, Recorded, name_of, unit_of};
 use raypencil_pack::{items_not_given, not_given, rays_not_given};
-use raypencil_report::{DefectGroup, DefectLine, count, counted, number, quantity};
+use raypencil_report::{
+    Block, Column, DefectGroup, DefectLine, Grid, Room, count, counted, number, quantity,
+};
 use raypencil_scene_io::{Subject, probe_command, quoted};
 
-use crate::monte_carlo::{ImageComparison, Z_TEST_LIMITS};
-use crate::radiance::RadianceComparison;
+use crate::monte_carlo::Z_TEST_LIMITS;
 use crate::scoreboard::{CandidateReport, Scoreboard};
 use crate::validation::Validation;
 
@@ -18,71 +19,6 @@ pub(super) const MAX_LISTED: usize = 10;
 
 /// What stands in the place of a quantity that is not given.
 const NOT_GIVEN: &str = "not given";
-
-/// The page's section about candidates; empty if there are none.
-#[derive(Debug, Default)]
-pub(crate) struct CandidatesSection {
-    pub(crate) names: Vec<String>,
-    pub(crate) rows: Vec<QuantityRow>,
-    pub(crate) images: Vec<ImageRow>,
-    pub(crate) radiance: Vec<RadianceRow>,
-    /// What is stored more coarsely than in single precision, a line for each candidate and storage.
-    pub(crate) coarse: Vec<String>,
-}
-
-/// One quantity: a cell for each renderer and candidate.
-#[derive(Debug)]
-pub(crate) struct QuantityRow {
-    pub(crate) quantity: String,
-    pub(crate) cells: Vec<Cell>,
-}
-
-/// Classes and worst errors of one renderer in one quantity.
-#[derive(Debug, Default)]
-pub(crate) struct Cell {
-    /// Why there is nothing else in the cell: `not given`; empty if something was compared.
-    pub(crate) absent: &'static str,
-    pub(crate) is_wrong: bool,
-    pub(crate) wrong: String,
-    pub(crate) classes: String,
-    /// Largest error; empty if no numbers were compared.
-    pub(crate) error: String,
-    /// Largest ratio of an error to its bound; empty if no numbers were compared.
-    pub(crate) ratio: String,
-    pub(crate) place: String,
-}
-
-impl Cell {
-    pub(crate) fn words(&self) -> String {
-        if self.absent.is_empty() { format!("{}, {}", self.wrong, self.classes) } else { self.absent.into() }
-    }
-}
-
-/// A candidate's Monte Carlo image.
-#[derive(Debug)]
-pub(crate) struct ImageRow {
-    pub(crate) who: String,
-    pub(crate) what: String,
-    pub(crate) is_wrong: bool,
-    pub(crate) pixels: String,
-    pub(crate) theirs: String,
-    pub(crate) ours: String,
-    pub(crate) total: String,
-    pub(crate) z: String,
-}
-
-/// A candidate's radiance map.
-#[derive(Debug)]
-pub(crate) struct RadianceRow {
-    pub(crate) who: String,
-    pub(crate) what: String,
-    pub(crate) is_wrong: bool,
-    pub(crate) lit: String,
-    pub(crate) dark: String,
-    pub(crate) others: String,
-    pub(crate) worst: String,
-    pub(crate) wrong: String,
-}
 
 /// Rays that are wrong or could not be decided.
 pub(super) fn wrong(tally: &ItemTally) -> u64 {
@@ -94,43 +30,72 @@ pub(super) fn miss_folder(report: &CandidateReport, index: usize) -> String {
     format!("misses/{}", report.miss_name(index))
 }
 
-/// The page's section about a validation's candidates.
-pub(crate) fn candidates_section(validation: &Validation) -> CandidatesSection {
-    let Some(scoreboard) = &validation.scoreboard else { return CandidatesSection::default() };
+/// The tables of a validation's candidates; none without them.
+pub(super) fn grids(validation: &Validation) -> Vec<Block> {
+    let Some(scoreboard) = &validation.scoreboard else { return Vec::new() };
+    let text = |line: &str| Block::Text { title: "", lines: vec![line.into()], room: Room::Wide };
+    let lines = validation.candidates().iter().map(line).collect();
+    let mut blocks = vec![
+        Block::Text { title: "Candidates", lines, room: Room::Wide },
+        text(
+            "The maps of all renderers and candidates, compared with the exact answer to every ray. An error counts as wrong \
+             if the renderer's own arithmetic does not explain it.",
+        ),
+        Block::Table {
+            title: "Every quantity beside the exact answers",
+            grid: panel(validation, scoreboard),
+        },
+    ];
+    let coarse: Vec<String> = scoreboard.candidates.iter().flat_map(coarse_storages).collect();
+    blocks.push(Block::Text {
+        title: "",
+        lines: coarse
+            .into_iter()
+            .map(|line| format!("{line}. These values are judged as rounded so, and are known no better."))
+            .collect(),
+        room: Room::Wide,
+    });
+    if scoreboard.candidates.iter().any(|report| !report.images.is_empty()) {
+        blocks.push(Block::Table { title: "Monte Carlo images", grid: images(scoreboard) });
+        blocks.push(text(
+            "Watts in each pixel by a renderer that samples light at random, against pencils drawn at random: both have the \
+             expectation of the camera equation. z is the difference in combined standard errors, over pixels with an \
+             expected flux above 1 % of the brightest pixel's.",
+        ));
+    }
+    if scoreboard.candidates.iter().any(|report| !report.radiance.is_empty()) {
+        blocks.push(Block::Table { title: "Radiance along single rays", grid: radiance(scoreboard) });
+        blocks.push(text(
+            "The radiance of one beam's light along each ray, against the closed form at the exact hit point. These numbers \
+             are not random.",
+        ));
+    }
+    blocks
+}
+
+/// A row for each quantity that somebody provides, and a column for each renderer and candidate.
+fn panel(validation: &Validation, scoreboard: &Scoreboard) -> Grid {
     let subject = &validation.subject;
     let checks = all_checks(scoreboard);
     let totals: Vec<BTreeMap<Item, ItemTally>> = checks.iter().map(|(_, check, _)| check.totals()).collect();
     let mut items: Vec<Item> = totals.iter().flat_map(|totals| totals.keys().copied()).collect();
     items.sort();
     items.dedup();
-    let row = |item: Item| QuantityRow {
-        quantity: name_of(item),
-        cells: totals
-            .iter()
-            .zip(&checks)
-            .map(|(totals, (_, _, recorded))| match totals.get(&item) {
-                Some(tally) => cell(subject, item, tally, *recorded),
-                None => Cell { absent: NOT_GIVEN, ..Cell::default() },
-            })
-            .collect(),
-    };
-    let rows = items.into_iter().map(row);
-    CandidatesSection {
-        names: checks.iter().map(|(name, _, _)| name.to_string()).collect(),
-        // A quantity that nobody provides has no row.
-        rows: rows.filter(|row| row.cells.iter().any(|cell| cell.absent != NOT_GIVEN)).collect(),
-        images: of_candidates(scoreboard, |report| {
-            report.images.iter().map(|image| image_row(report, image)).collect()
-        }),
-        radiance: of_candidates(scoreboard, |report| {
-            report.radiance.iter().map(|map| radiance_row(report, map)).collect()
-        }),
-        coarse: scoreboard.candidates.iter().flat_map(coarse_storages).collect(),
+    let names = checks.iter().map(|(name, _, _)| Column::text(name.to_string()));
+    let mut grid = Grid::new([Column::text("quantity")].into_iter().chain(names));
+    for item in items {
+        let tallies: Vec<Option<&ItemTally>> = totals.iter().map(|totals| totals.get(&item)).collect();
+        let cell = |(tally, (_, _, recorded)): (&Option<&ItemTally>, &(&str, &Check, Option<&Recorded>))| {
+            tally.map_or(NOT_GIVEN.into(), |tally| cell(subject, item, tally, *recorded))
+        };
+        let cells: Vec<String> = tallies.iter().zip(&checks).map(cell).collect();
+        if cells.iter().all(|cell| cell == NOT_GIVEN) {
+            continue;
+        }
+        let fails = tallies.iter().flatten().any(|tally| wrong(tally) > 0);
+        grid.row_with_room([name_of(item)].into_iter().chain(cells), fails, Room::Wide);
     }
-}
-
-fn of_candidates<T>(scoreboard: &Scoreboard, rows: impl Fn(&CandidateReport) -> Vec<T>) -> Vec<T> {
-    scoreboard.candidates.iter().flat_map(rows).collect()
+    grid
 }
 
 /// What a candidate stores more coarsely than in single precision.
@@ -155,77 +120,102 @@ fn all_checks(scoreboard: &Scoreboard) -> Vec<(&str, &Check, Option<&Recorded>)>
     ours.chain(theirs).collect()
 }
 
-fn cell(subject: &Subject, item: Item, tally: &ItemTally, recorded: Option<&Recorded>) -> Cell {
+/// The classes and the worst error of one renderer in one quantity.
+fn cell(subject: &Subject, item: Item, tally: &ItemTally, recorded: Option<&Recorded>) -> String {
     if tally.compared() == 0 {
-        let absent = not_given(tally).unwrap_or("no ray has it");
-        return Cell { absent, ..Cell::default() };
+        return not_given(tally).unwrap_or("no ray has it").into();
     }
     let storage = recorded.and_then(|recorded| recorded.storage_of_item(item));
     let agree = match storage.and_then(Storage::coarse_words) {
         Some(coarse) => format!("agree at {coarse}"),
         None => "agree".into(),
     };
-    let mut classes = vec![format!("{} {agree}", count(tally.of(Class::Agree)))];
+    let mut words = format!("{} wrong, {} {agree}", count(wrong(tally)), count(tally.of(Class::Agree)));
     for (class, word) in [(Class::Tie, "tie"), (Class::Rounding, "rounding")] {
         if tally.of(class) > 0 {
-            classes.push(format!("{} {word}", count(tally.of(class))));
+            words += &format!(", {} {word}", count(tally.of(class)));
         }
     }
     if rays_not_given(tally) > 0 {
-        classes.push(format!("{} not given", count(rays_not_given(tally))));
+        words += &format!(", {} not given", count(rays_not_given(tally)));
     }
     let unit = unit_of(subject.scene.flux_model(), item);
-    let largest = |largest: &Option<Largest>, unit: &str| largest.as_ref().map(|it| quantity(it.value, unit));
-    let ratio =
-        largest(&tally.worst_ratio, "").map_or(String::new(), |ratio| format!("{ratio} of its bound"));
-    Cell {
-        absent: "",
-        is_wrong: wrong(tally) > 0,
-        wrong: format!("{} wrong", count(wrong(tally))),
-        classes: classes.join(", "),
-        error: largest(&tally.worst_error, unit).unwrap_or_default(),
-        ratio,
-        place: tally.worst_error.as_ref().map_or(String::new(), |it| it.place.to_string()),
+    if let Some(error) = &tally.worst_error {
+        words += &format!("; at most {}", quantity(error.value, unit));
     }
+    if let Some(ratio) = &tally.worst_ratio {
+        words += &format!(", {} of its bound", quantity(ratio.value, ""));
+    }
+    words
 }
 
 fn signed(value: f64) -> String {
     if value > 0.0 { format!("+{}", number(value)) } else { number(value) }
 }
 
-fn image_row(report: &CandidateReport, image: &ImageComparison) -> ImageRow {
+/// The candidates' Monte Carlo images.
+fn images(scoreboard: &Scoreboard) -> Grid {
+    let mut grid = Grid::new([
+        Column::text("renderer"),
+        Column::text("image"),
+        Column::number("pixels"),
+        Column::number("total"),
+        Column::number("expected"),
+        Column::number("off by"),
+        Column::text("z"),
+    ]);
     // The error is relative: an absolute one would be beyond the printed digits of the value.
     let with_error =
         |[value, error]: [f64; 2]| format!("{} W (1 ± {})", number(value), number(error / value));
-    let at = image.at.map_or(String::new(), |at| format!(" at {at}"));
-    ImageRow {
-        who: report.candidate.name.clone(),
-        what: format!("{}, beam {}", image.integrator, image.beam),
-        is_wrong: !image.is_within(&Z_TEST_LIMITS),
-        pixels: count(image.pixels as u64),
-        theirs: with_error(image.theirs),
-        ours: with_error(image.ours),
-        total: format!("{}, {} standard errors", signed(image.total_off()), signed(image.total_z())),
-        z: format!(
-            "rms {}, mean {}, largest {}{at}",
-            number(image.z_rms),
-            signed(image.z_mean),
-            signed(image.z_largest)
-        ),
+    for report in &scoreboard.candidates {
+        for image in &report.images {
+            let at = image.at.map_or(String::new(), |at| format!(" at {at}"));
+            let cells = [
+                report.candidate.name.clone(),
+                format!("{}, beam {}", image.integrator, image.beam),
+                count(image.pixels as u64),
+                with_error(image.theirs),
+                with_error(image.ours),
+                format!("{}, {} standard errors", signed(image.total_off()), signed(image.total_z())),
+                format!(
+                    "rms {}, mean {}, largest {}{at}",
+                    number(image.z_rms),
+                    signed(image.z_mean),
+                    signed(image.z_largest)
+                ),
+            ];
+            grid.row_with_room(cells, !image.is_within(&Z_TEST_LIMITS), Room::Wide);
+        }
     }
+    grid
 }
 
-fn radiance_row(report: &CandidateReport, map: &RadianceComparison) -> RadianceRow {
-    RadianceRow {
-        who: report.candidate.name.clone(),
-        what: format!("{} rays, beam {}", map.sensor, map.beam),
-        is_wrong: map.wrong > 0,
-        lit: count(map.lit),
-        dark: count(map.dark),
-        others: count(map.shadowed + map.doubtful),
-        worst: map.worst.map_or(String::new(), |(off, place)| format!("{} at {place}", number(off))),
-        wrong: count(map.wrong),
+/// The candidates' radiance maps.
+fn radiance(scoreboard: &Scoreboard) -> Grid {
+    let mut grid = Grid::new([
+        Column::text("renderer"),
+        Column::text("rays"),
+        Column::number("lit"),
+        Column::number("dark"),
+        Column::number("hidden, in shadow or on a border"),
+        Column::text("worst relative error"),
+        Column::number("wrong"),
+    ]);
+    for report in &scoreboard.candidates {
+        for map in &report.radiance {
+            let cells = [
+                report.candidate.name.clone(),
+                format!("{} rays, beam {}", map.sensor, map.beam),
+                count(map.lit),
+                count(map.dark),
+                count(map.shadowed + map.doubtful),
+                map.worst.map_or(String::new(), |(off, place)| format!("{} at {place}", number(off))),
+                count(map.wrong),
+            ];
+            grid.row_with_room(cells, map.wrong > 0, Room::Wide);
+        }
     }
+    grid
 }
 
 /// The listed misses of each candidate that has any.

@@ -25,10 +25,6 @@ use raypencil_scene::{Progress, RenderOutput, Sampling, SensorId, SensorMap, Tri
 use raypencil_scene_io::{Subject, scene_sha256};
 
 use crate::misses::{MAX_MISSES, write_misses};
-use crate::output::junit::junit;
-use crate::output::markdown::markdown;
-use crate::output::report::html;
-use crate::output::summary::summary_json;
 use crate::ray_sets::write_ray_set;
 use crate::rendered::Rendered;
 use crate::validation::Validation;
@@ -120,20 +116,18 @@ pub fn write_validation(
     }
 
     progress.stage("writing the report");
-    let write = |name: &str, contents: String| -> Result<PathBuf, HarnessError> {
+    let write = |name: &str, contents: &str| -> Result<PathBuf, HarnessError> {
         let path = folder.join(name);
         write_atomically(&path, |file| file.write_all(contents.as_bytes()))?;
         Ok(path)
     };
     // A failed template is reported with the file that it was for.
-    let made = |name: &str, contents: Result<String, io::Error>| match contents {
-        Ok(contents) => write(name, contents),
-        Err(source) => Err(FileError::Io { path: folder.join(name), action: "write", source }.into()),
-    };
-    let report = made("report.html", html(validation).map_err(io::Error::other))?;
-    let markdown = made("summary.md", markdown(validation).map_err(io::Error::other))?;
-    let junit = made("junit.xml", junit(validation).map_err(io::Error::other))?;
-    let summary = write("summary.json", summary_json(validation))?;
+    let failed = |name: &str, source| FileError::Io { path: folder.join(name), action: "write", source };
+    let document = validation.document_with_pictures();
+    let document = document.map_err(|error| failed("report.html", io::Error::other(error)))?;
+    let files = document.files("summary.json").map_err(|(name, error)| failed(name, error))?;
+    let paths = files.iter().map(|(name, contents)| write(name, contents)).collect::<Result<Vec<_>, _>>()?;
+    let [report, junit, markdown, summary] = <[PathBuf; 4]>::try_from(paths).expect("four files");
     Ok(Written { maps, report, markdown, junit, summary, time: start.elapsed() })
 }
 

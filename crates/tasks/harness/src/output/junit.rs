@@ -1,6 +1,4 @@
-//! `junit.xml`: one test case per pair, sensor and quantity, for CI that reads JUnit.
-
-use std::io;
+//! The test cases of `junit.xml`: one per pair, sensor and quantity, for CI that reads JUnit.
 
 use crate::monte_carlo::Z_TEST_LIMITS;
 use crate::output::candidates::line;
@@ -9,16 +7,16 @@ use crate::scoreboard::CandidateReport;
 use crate::validation::Validation;
 use raypencil_judge::{Class, ItemTally, ListedDefect, Quantity, SensorResult};
 use raypencil_pack::check_suite;
-use raypencil_report::{JunitCase, JunitReport, JunitSuite, count, counted};
+use raypencil_report::{JunitCase, JunitSuite, count, counted};
 use raypencil_scene_io::{Subject, probe_command};
 
 /// How many defects a failure lists.
 const LISTED: usize = 5;
 
-/// The whole document.
-pub fn junit(validation: &Validation) -> io::Result<String> {
+/// All suites.
+pub(super) fn suites(validation: &Validation) -> Vec<JunitSuite> {
     let subject = &validation.subject;
-    let mut report = JunitReport::new(format!("raypencil validate {}", subject.arguments));
+    let mut suites = Vec::new();
     for pair in &validation.pairs {
         let (a, b) = (&validation.rendered[pair.a].name, &validation.rendered[pair.b].name);
         let mut suite = JunitSuite::new(format!("{}: {a} against {b}", subject.name));
@@ -29,7 +27,7 @@ pub fn junit(validation: &Validation) -> io::Result<String> {
                 suite.push(case(subject, sensor, quantity, tally).with_class(class));
             }
         }
-        report.push(suite);
+        suites.push(suite);
     }
     for set in &validation.ray_sets {
         let mut suite = JunitSuite::new(format!("{}: rays {}", subject.name, set.name));
@@ -40,17 +38,17 @@ pub fn junit(validation: &Validation) -> io::Result<String> {
             }
             Some(_) => JunitCase::passed("first hits"),
         });
-        report.push(suite);
+        suites.push(suite);
     }
     for candidate in validation.candidates() {
-        report.push(candidate_suite(validation, candidate));
+        suites.push(candidate_suite(validation, candidate));
     }
     // Skipped cases alone would look like a pass.
     if Verdict::of(validation) == Verdict::NothingCompared {
         let case = JunitCase::failed("something is compared", "nothing_compared", headline(validation));
         let mut suite = JunitSuite::new(subject.name.as_str());
         suite.push(case.with_text(explanation(validation)));
-        report.push(suite);
+        suites.push(suite);
     }
     // So would cases that pass because all renderers see nothing.
     if Verdict::of(validation) == Verdict::NothingHit {
@@ -61,9 +59,9 @@ pub fn junit(validation: &Validation) -> io::Result<String> {
         };
         let mut suite = JunitSuite::new(subject.name.as_str());
         suite.push(case);
-        report.push(suite);
+        suites.push(suite);
     }
-    report.to_xml()
+    suites
 }
 
 /// A candidate: a case for each sensor and quantity, for each image and for each radiance map. If candidates may fail,

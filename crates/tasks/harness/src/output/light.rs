@@ -1,51 +1,53 @@
 //! The light of the beams, for the page: the flux on the camera's image, and the flux of the pencils along a stripe.
 
+use askama::Template;
 use raypencil_report::{ColourMap, Picture, Reduction, Scale, Tick, number, quantity};
 use raypencil_scene::{FluxModel, Image, Maybe};
 
 use crate::validation::Validation;
 
 /// One renderer's image of the light of all beams.
-pub(crate) struct FluxImage {
-    pub(crate) title: String,
-    pub(crate) alt: String,
-    pub(crate) source: String,
-    pub(crate) width: u32,
-    pub(crate) height: u32,
-    pub(crate) note: String,
+struct FluxImage {
+    title: String,
+    alt: String,
+    source: String,
+    width: u32,
+    height: u32,
+    note: String,
 }
 
 /// The colour scale that all images share.
-pub(crate) struct FluxScale {
-    pub(crate) gradient: String,
-    pub(crate) ticks: Vec<Tick>,
-    pub(crate) label: String,
+struct FluxScale {
+    gradient: String,
+    ticks: Vec<Tick>,
+    label: String,
 }
 
 /// Flux of the pencils in a beam's middle row, column by column, with a curve for each renderer.
-pub(crate) struct StripeChart {
-    pub(crate) title: String,
+struct StripeChart {
+    title: String,
     /// Ticks of the columns and of the flux, at positions from 0 to 1; those of the flux go upwards.
-    pub(crate) columns: Vec<Tick>,
-    pub(crate) values: Vec<Tick>,
-    pub(crate) curves: Vec<Curve>,
-    pub(crate) unit: &'static str,
+    columns: Vec<Tick>,
+    values: Vec<Tick>,
+    curves: Vec<Curve>,
+    unit: &'static str,
 }
 
 /// One renderer's curve in a [`StripeChart`], in a box of 1000 by 240 units.
-pub(crate) struct Curve {
-    pub(crate) name: String,
-    pub(crate) colour: &'static str,
-    pub(crate) width: f64,
-    pub(crate) points: String,
+struct Curve {
+    name: String,
+    colour: &'static str,
+    width: f64,
+    points: String,
 }
 
 /// The page's section about light.
-#[derive(Default)]
-pub(crate) struct Light {
-    pub(crate) images: Vec<FluxImage>,
-    pub(crate) scale: Option<FluxScale>,
-    pub(crate) stripes: Vec<StripeChart>,
+#[derive(Template)]
+#[template(path = "light.html")]
+struct Light {
+    images: Vec<FluxImage>,
+    scale: Option<FluxScale>,
+    stripes: Vec<StripeChart>,
 }
 
 /// Width and height of a chart's box, SVG units.
@@ -55,8 +57,16 @@ const CHART_SIZE: [f64; 2] = [1000.0, 240.0];
 const CURVE_STYLES: [(&str, f64); 4] =
     [("#e69f00", 6.0), ("#0072b2", 2.5), ("#009e73", 1.2), ("#cc79a7", 0.8)];
 
-/// The light of a validation; empty if no renderer computed flux.
-pub(crate) fn light(validation: &Validation, max_columns: u32) -> Light {
+/// The light of a validation as HTML; empty if no renderer computed flux.
+///
+/// # Errors
+/// An error of the template.
+pub(super) fn light_section(validation: &Validation, max_columns: u32) -> Result<String, askama::Error> {
+    let light = light(validation, max_columns);
+    if light.images.is_empty() { Ok(String::new()) } else { light.render() }
+}
+
+fn light(validation: &Validation, max_columns: u32) -> Light {
     let scene = &validation.subject.scene;
     let unit = match scene.flux_model() {
         FluxModel::Radiometric => "W",

@@ -1,17 +1,18 @@
 //! Reports of a validation: the folder that it leaves behind and the screen that the command prints.
 //! `docs/guide/report.md` describes both.
 
-pub(crate) mod candidates;
-pub(crate) mod explorer;
+mod candidates;
+mod document;
+mod explorer;
 pub(crate) mod folder;
 pub(crate) mod formats;
-pub(crate) mod junit;
-pub(crate) mod light;
-pub(crate) mod markdown;
-pub(crate) mod panel;
-pub(crate) mod plots;
-pub(crate) mod report;
+mod junit;
+mod light;
+mod panel;
+mod pictures;
+mod plots;
+mod reading;
 pub(crate) mod screen;
-pub(crate) mod summary;
-pub(crate) mod table;
-pub(crate) mod verdict;
+mod summary;
+mod table;
+mod verdict;

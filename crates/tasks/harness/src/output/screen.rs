@@ -1,17 +1,19 @@
-//! The screen that the command prints: a validation in at most 80 columns and 40 lines.
+//! What a screen shows of a validation: on a terminal at most 80 columns and 40 lines.
 
 use std::fmt::Write;
 use std::path::Path;
 
-use raypencil_judge::{Class, SensorResult, name_of};
-use raypencil_report::{Align, Table, VERSION, count, counted, list, time};
-use raypencil_scene::{Place, SensorId, Stage};
+use raypencil_judge::{Class, ListedDefect, SensorResult, name_of};
+use raypencil_report::{Block, DefectLine, Grid, VERSION, count, counted, list, time};
+use raypencil_scene::{SensorId, Stage};
 use raypencil_scene_io::{probe_command, scene_sha256};
 use raypencil_survey::Whereabouts;
 
 use crate::output::candidates;
-use crate::output::table::{hits, totals, worst};
-use crate::output::verdict::{Verdict, defects, explanation, headlines, rays};
+use crate::output::document::document;
+use crate::output::pictures::Pictures;
+use crate::output::table::{hits, quantities_of_screen, short, worst};
+use crate::output::verdict::{Verdict, defects, explanation, rays};
 use crate::validation::Validation;
 
 /// Maximum columns of a line. Only paths and commands, which are for copying, may be longer.
@@ -31,12 +33,6 @@ const MAX_CAUSES: usize = 4;
 
 /// Maximum lines of candidates.
 const MAX_CANDIDATES: usize = 4;
-
-/// Index of the column of the paper's approximations in the table of quantities.
-const APPROXIMATION_COLUMN: usize = 4;
-
-/// Index of the column of places there.
-const PLACE_COLUMN: usize = 7;
 
 const MAX_WARNINGS: usize = 2;
 
@@ -80,45 +76,87 @@ const MAX_DEFECT_LINES: usize = 2;
 /// # Ok::<(), raypencil_scene::SceneError>(())
 /// ```
 pub fn one_screen(validation: &Validation, folder: Option<&Path>) -> String {
-    screen(validation, folder, Room::Terminal)
+    let extent = Extent::Terminal(folder);
+    document(validation, extent, Pictures::default(), String::new()).screen_of_width(MAX_COLUMNS)
 }
 
 /// The same text for a file or another program: no line and no list is cut, whatever its length.
 pub fn whole_screen(validation: &Validation, folder: Option<&Path>) -> String {
-    screen(validation, folder, Room::Unlimited)
+    let extent = folder.map_or(Extent::Whole, Extent::WholeOf);
+    document(validation, extent, Pictures::default(), String::new()).screen()
+}
+
+/// How much a screen shows, and the folder that it names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Extent<'a> {
+    /// One screen of a terminal: what does not fit is cut.
+    Terminal(Option<&'a Path>),
+    /// As much as the text needs; nothing was written.
+    Whole,
+    /// The same, with the folder that was written.
+    WholeOf(&'a Path),
+}
+
+impl<'a> Extent<'a> {
+    fn room(self) -> Room {
+        if matches!(self, Self::Terminal(_)) { Room::Terminal } else { Room::Unlimited }
+    }
+
+    fn folder(self) -> Option<&'a Path> {
+        match self {
+            Self::Terminal(folder) => folder,
+            Self::Whole => None,
+            Self::WholeOf(folder) => Some(folder),
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Room {
-    /// One screen of a terminal: what does not fit is cut.
     Terminal,
-    /// As much as the text needs.
     Unlimited,
 }
 
-fn screen(validation: &Validation, folder: Option<&Path>, room: Room) -> String {
+/// What a document has for its screen alone.
+pub(super) struct ScreenBlocks {
+    /// The first lines.
+    pub(super) question: String,
+    pub(super) blocks: Vec<Block>,
+    /// What is said below the verdict.
+    pub(super) remarks: Vec<String>,
+    /// The worst defects.
+    pub(super) worst: Vec<DefectLine>,
+}
+
+pub(super) fn screen_blocks(validation: &Validation, extent: Extent<'_>) -> ScreenBlocks {
+    let room = extent.room();
     let warnings = warnings(validation, room);
-    let verdict = verdict(validation, warnings.lines().count(), room);
-    let blocks = [
-        head(validation, room),
-        quantities(validation, room),
-        sensors(validation, room),
-        ray_sets(validation, room),
-        approximations(validation, room),
-        candidates(validation, room),
-        times(validation, room),
-        files(validation, folder, room),
-        warnings,
-        verdict,
+    let worst = worst_defects(validation, warnings.lines().count(), room);
+    let text = |text: String| Block::Text {
+        title: "",
+        lines: text.lines().map(str::to_string).collect(),
+        room: raypencil_report::Room::Screen,
+    };
+    let blocks = vec![
+        Block::Table { title: "", grid: quantities(validation, room) },
+        text(sensors(validation, room)),
+        text(ray_sets(validation, room)),
+        text(approximations(validation, room)),
+        text(candidates(validation, room)),
+        text(times(validation, room)),
+        text(files(validation, extent.folder(), room)),
+        text(warnings),
     ];
-    blocks.into_iter().filter(|block| !block.is_empty()).collect::<Vec<_>>().join("\n")
+    ScreenBlocks { question: head(validation, room), blocks, remarks: remarks(validation), worst }
 }
 
 /// The scene, its renderers, where vehicle and terrain are, and what was rounded.
 fn head(validation: &Validation, room: Room) -> String {
     let subject = &validation.subject;
     let names: Vec<&str> = validation.rendered.iter().map(|rendered| rendered.name.as_str()).collect();
-    let who = cut(&format!("raypencil {VERSION}: {} by {}", subject.name, list(&names)), room);
+    // The program's name and version stand before it.
+    let before = format!("raypencil {VERSION}: ").chars().count();
+    let who = cut_to(&format!("{} by {}", subject.name, list(&names)), MAX_COLUMNS - before, room);
     let stands = Whereabouts::of(&subject.scene, subject.vehicle.as_ref());
     let [vehicle, terrain] = [stands.vehicle_line(), stands.terrain_line()].map(|line| cut(&line, room));
     // On a terminal warnings take its room; the report has it all the same.
@@ -135,43 +173,11 @@ fn head(validation: &Validation, room: Room) -> String {
 }
 
 /// The table of quantities and classes over all sensors.
-fn quantities(validation: &Validation, room: Room) -> String {
-    // The paper's approximations have a column only if there are any.
-    let has_approximations = validation.counts().approximation > 0;
-    let heads = ["", "agree", "tie", "rounding", "approx.", "defect", "error", "at", "/bound"];
-    let is_text = |head: &str| head.is_empty() || head == "at";
-    let mut table = Table::new(heads.map(|head| if is_text(head) { Align::Left } else { Align::Right }));
-    table.row(heads);
-    for (quantity, tally) in totals(validation.pairs.iter().flat_map(|pair| &pair.sensors)) {
-        // A missing value is a dash, so that no cell is empty.
-        let or_dash = |text: String| if text.is_empty() { "-".into() } else { text };
-        table.row([
-            quantity.to_string(),
-            count(tally.of(Class::Agree)),
-            count(tally.of(Class::Tie)),
-            count(tally.of(Class::Rounding)),
-            count(tally.of(Class::Approximation)),
-            count(tally.of(Class::Defect)),
-            or_dash(worst(&tally.worst_error, quantity.unit(validation.subject.scene.flux_model()))),
-            or_dash(tally.worst_error.as_ref().map_or(String::new(), |worst| short(worst.place))),
-            or_dash(worst(&tally.worst_ratio, "")),
-        ]);
-    }
-    if !has_approximations {
-        table.remove_column(APPROXIMATION_COLUMN);
-    }
-    if room == Room::Terminal && table.clone().with_gap(1).width() > MAX_COLUMNS {
-        // With huge counts there is no room for the places; the report has them.
-        table.remove_column(PLACE_COLUMN - usize::from(!has_approximations));
-    }
-    // Two blanks between columns, one where there is no room.
-    let gap = if table.width() > MAX_COLUMNS { 1 } else { 2 };
-    table.with_gap(gap).to_string()
-}
-
-/// A place in few letters.
-fn short(Place { sensor, i, j }: Place) -> String {
-    format!("{sensor} {i},{j}")
+fn quantities(validation: &Validation, room: Room) -> Grid {
+    let whole = quantities_of_screen(validation, true);
+    // With huge counts there is no room for the places; the report has them.
+    let is_too_wide = room == Room::Terminal && whole.to_table().with_gap(1).width() > MAX_COLUMNS;
+    if is_too_wide { quantities_of_screen(validation, false) } else { whole }
 }
 
 /// A line for each sensor, over all pairs.
@@ -330,40 +336,38 @@ fn warnings(validation: &Validation, room: Room) -> String {
     text
 }
 
-/// The verdict, and the commands that show the first defects.
-fn verdict(validation: &Validation, lines_of_warnings: usize, room: Room) -> String {
-    let verdict = Verdict::of(validation);
-    let mut text: String =
-        headlines(validation).iter().map(|line| format!("{}\n", cut(&format!("{line}."), room))).collect();
+/// What was not compared, or why the verdict is none.
+fn remarks(validation: &Validation) -> Vec<String> {
     let counts = validation.counts();
-    match verdict {
+    match Verdict::of(validation) {
         Verdict::Agree if counts.not_compared > 0 => {
-            let _ = writeln!(
-                text,
-                "{} not compared: one side has no maps.",
-                rays(validation, counts.not_compared)
-            );
+            vec![format!("{} not compared: one side has no maps.", rays(validation, counts.not_compared))]
         }
-        Verdict::NothingCompared | Verdict::NothingHit => {
-            let _ = writeln!(text, "{}", cut(&explanation(validation), room));
-        }
-        _ => {}
+        Verdict::NothingCompared | Verdict::NothingHit => vec![explanation(validation)],
+        _ => Vec::new(),
     }
+}
+
+/// The worst defects, with the commands that show them.
+fn worst_defects(validation: &Validation, lines_of_warnings: usize, room: Room) -> Vec<DefectLine> {
     // Warnings take the room of the last defects, which have up to three lines each.
     let taken = match (room, lines_of_warnings) {
         (Room::Unlimited, _) | (_, 0) => 0,
         // With the blank line between the blocks.
         (Room::Terminal, lines) => (lines + 1).div_ceil(3),
     };
-    let max_lines = if taken > 0 { 1 } else { MAX_DEFECT_LINES };
+    let most = if taken > 0 { 1 } else { MAX_DEFECT_LINES } * MAX_COLUMNS;
     let of_renderers = defects(validation).into_iter().take(MAX_DEFECTS.saturating_sub(taken));
     let of_candidates = validation.candidates().iter().flat_map(|report| report.misses().take(1));
-    for defect in of_renderers.chain(of_candidates.take(MAX_CANDIDATE_DEFECTS)) {
-        let _ = writeln!(text, "  {}", probe_command(&validation.subject, defect.place));
-        let words = format!("{}: {}", name_of(defect.item), defect.words());
-        text.push_str(&folded(&words, max_lines, room));
-    }
-    text
+    let line = |defect: &ListedDefect| {
+        let (place, quantity) = (defect.place.to_string(), name_of(defect.item));
+        // The place and the quantity stand before the words.
+        let before = place.chars().count() + quantity.chars().count() + "indent".len();
+        let words = cut_to(&defect.words(), most.saturating_sub(before), room);
+        let command = probe_command(&validation.subject, defect.place);
+        DefectLine { place, quantity, words, command, ..DefectLine::default() }
+    };
+    of_renderers.chain(of_candidates.take(MAX_CANDIDATE_DEFECTS)).map(line).collect()
 }
 
 /// Joins `parts` with commas on lines that begin with `head` or as many blanks. Parts beyond `max_lines` lines are
@@ -393,28 +397,17 @@ fn wrap(head: &str, parts: impl IntoIterator<Item = String>, max_lines: usize, r
     lines.into_iter().map(|line| cut(&line, room) + "\n").collect()
 }
 
-/// Words on indented lines, at most `max_lines` of them.
-fn folded(words: &str, max_lines: usize, room: Room) -> String {
-    let mut lines: Vec<String> = vec!["     ".into()];
-    for word in words.split(' ') {
-        let is_last = lines.len() == max_lines && room == Room::Terminal;
-        let line = lines.last_mut().expect("a line");
-        if line.chars().count() + 1 + word.chars().count() > MAX_COLUMNS && !is_last {
-            lines.push(format!("      {word}"));
-        } else {
-            line.push(' ');
-            line.push_str(word);
-        }
-    }
-    lines.into_iter().map(|line| cut(&line, room) + "\n").collect()
-}
-
 /// A line cut at the edge of the screen.
 fn cut(line: &str, room: Room) -> String {
-    if room == Room::Unlimited || line.chars().count() <= MAX_COLUMNS {
+    cut_to(line, MAX_COLUMNS, room)
+}
+
+/// A line cut after so many characters.
+fn cut_to(line: &str, most: usize, room: Room) -> String {
+    if room == Room::Unlimited || line.chars().count() <= most {
         return line.into();
     }
-    let mut short: String = line.chars().take(MAX_COLUMNS - 3).collect();
+    let mut short: String = line.chars().take(most - 3).collect();
     short.push_str("...");
     short
 }

@@ -4,29 +4,24 @@ use std::collections::BTreeMap;
 
 use raypencil_cast::comparison_json;
 use raypencil_judge::{ApproximationTallies, ApproximationTally, Class, Largest, Quantity, SensorResult};
-use raypencil_report::VERSION;
 use raypencil_scene::Switches;
 use raypencil_scene_io::{Subject, probe_command, scene_sha256};
 use raypencil_survey::{Warning, Whereabouts};
 use serde::Serialize;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use crate::output::panel::{ScoreboardSummary, scoreboard_summary};
 use crate::output::table::hits;
-use crate::output::verdict::Verdict;
 use crate::ray_sets::RaySetResult;
 use crate::rendered::Rendered;
 use crate::validation::{Pair, Validation};
 
 /// Version of the schema; it grows when a key changes its meaning or is removed. Since 2 `scene.sha256` is the digest of
 /// the resolved scene.
-const FORMAT: u32 = 2;
+pub(super) const FORMAT: u32 = 2;
 
 #[derive(Serialize)]
 struct Summary<'a> {
-    format: u32,
-    version: &'a str,
-    verdict: Verdict,
     /// Whether the exit code is 0.
     passes: bool,
     candidates: CandidateCounts,
@@ -159,15 +154,12 @@ struct StageSummary<'a> {
     seconds: f64,
 }
 
-/// The contents of `summary.json`.
-pub fn summary_json(validation: &Validation) -> String {
+/// The keys of `summary.json`, but those that every document has.
+pub(super) fn summary_keys(validation: &Validation) -> Map<String, Value> {
     let Validation { subject, rendered, pairs, candidates_may_fail, stages, .. } = validation;
     let counts = validation.counts();
     let approximations = validation.approximations();
     let summary = Summary {
-        format: FORMAT,
-        version: VERSION,
-        verdict: Verdict::of(validation),
         passes: validation.passes(),
         candidates: CandidateCounts {
             count: validation.candidates().len(),
@@ -204,9 +196,10 @@ pub fn summary_json(validation: &Validation) -> String {
             .map(|stage| StageSummary { name: &stage.name, seconds: stage.time.as_secs_f64() })
             .collect(),
     };
-    let mut json = serde_json::to_string_pretty(&summary).expect("numbers, texts and lists of them are JSON");
-    json.push('\n');
-    json
+    match serde_json::to_value(&summary) {
+        Ok(Value::Object(keys)) => keys,
+        _ => unreachable!("a struct of numbers, texts and lists of them is an object"),
+    }
 }
 
 fn ray_set_summary(set: &RaySetResult) -> Value {

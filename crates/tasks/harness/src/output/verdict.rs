@@ -1,14 +1,12 @@
 //! The verdict on a validation in words, which claim no more than was shown.
 
 use raypencil_judge::{Class, Largest, ListedDefect, Quantity, listed_defects, name_of};
-use raypencil_report::{count, counted, list, number};
-use serde::Serialize;
+use raypencil_report::{Outcome, count, counted, list, number};
 
 use crate::scoreboard::CandidateReport;
 use crate::validation::Validation;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Verdict {
     /// Rays were compared, and none is a defect.
     Agree,
@@ -43,12 +41,23 @@ impl Verdict {
         }
     }
 
-    /// A sign that does not depend on colour.
-    pub(crate) fn sign(self) -> &'static str {
+    /// What became of the validation.
+    pub(super) fn outcome(self) -> Outcome {
         match self {
-            Self::Agree => "✓",
-            Self::Defects | Self::CandidatesWrong => "✗",
-            Self::NothingHit | Self::NothingCompared => "?",
+            Self::Agree => Outcome::Agrees,
+            Self::Defects | Self::CandidatesWrong => Outcome::Fails,
+            Self::NothingHit | Self::NothingCompared => Outcome::Open,
+        }
+    }
+
+    /// The same for programs.
+    pub(super) fn key(self) -> &'static str {
+        match self {
+            Self::Agree => "agree",
+            Self::Defects => "defects",
+            Self::CandidatesWrong => "candidates_wrong",
+            Self::NothingHit => "nothing_hit",
+            Self::NothingCompared => "nothing_compared",
         }
     }
 }

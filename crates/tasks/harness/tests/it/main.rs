@@ -3,5 +3,6 @@
 
 mod formats;
 mod output;
+mod reports;
 mod summary_schema;
 mod warnings;

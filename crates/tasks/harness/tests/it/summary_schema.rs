@@ -1,9 +1,10 @@
 //! Every summary of a validation keeps to `docs/formats/summary.schema.json`.
 
-use raypencil_harness::summary_json;
 use raypencil_tests::fixtures;
 use raypencil_tests::schema::{assert_keys_are_closed, schema_faults};
 use serde_json::Value;
+
+use crate::reports::summary_json;
 
 const SCHEMA: &str = include_str!("../../../../../docs/formats/summary.schema.json");
 

@@ -384,6 +384,8 @@ impl CheckFindings {
             },
             headline: self.sentence(),
             remarks,
+            explanation: Vec::new(),
+            counts: Vec::new(),
             blocks: vec![
                 Block::Table { title: "Every quantity", grid: grid(&self.totals) },
                 Block::Findings {
