@@ -120,7 +120,7 @@ fn both_agree(count: u32, cases: impl Strategy<Value = Case>, name: &'static str
 
 #[test]
 fn both_renderers_agree_on_every_ray() {
-    both_agree(2000, cases(), "both-renderers-agree");
+    both_agree(1000, cases(), "both-renderers-agree");
 }
 
 #[test]
@@ -192,7 +192,7 @@ fn both_renderers_agree_on_what_the_camera_sees() {
         agreement(&scene, side(&scanline, &a), side(&tracer, &b)).map(drop).map_err(TestCaseError::fail)
     };
     let is_default =
-        check_and_reproduce(1000, lit_cases(), property, reproduce_both("both-renderers-see-alike"));
+        check_and_reproduce(600, lit_cases(), property, reproduce_both("both-renderers-see-alike"));
     assert!(
         !is_default || 20 * seen.get() > pencils.get(),
         "{} of {} pencils are seen",
@@ -203,7 +203,7 @@ fn both_renderers_agree_on_what_the_camera_sees() {
 
 #[test]
 fn skipping_faces_never_changes_a_map() {
-    check(1000, cases(), |case: Case| {
+    check(500, cases(), |case: Case| {
         let scene = case.scene();
         let skipping = render(&Scanline::default(), &scene);
         let testing_all = render(
@@ -224,7 +224,7 @@ fn shuffled(original: &Mesh, seed: u64) -> (Arc<Mesh>, Vec<u32>) {
 
 #[test]
 fn the_order_of_faces_does_not_matter() {
-    check(500, (cases(), any::<u64>()), |(case, seed): (Case, u64)| {
+    check(300, (cases(), any::<u64>()), |(case, seed): (Case, u64)| {
         let mesh = case.mesh();
         let (shuffled, order) = shuffled(&mesh, seed);
         let (scene, other) = (case.scene_of(&mesh, &mesh), case.scene_of(&shuffled, &mesh));
@@ -274,7 +274,7 @@ fn split(original: &Mesh, seed: u64) -> Arc<Mesh> {
 
 #[test]
 fn sharing_vertices_or_not_does_not_matter() {
-    check(500, (cases(), any::<u64>()), |(case, seed): (Case, u64)| {
+    check(300, (cases(), any::<u64>()), |(case, seed): (Case, u64)| {
         let mesh = case.mesh();
         let scene = case.scene_of(&mesh, &mesh);
         for renderer in renderers() {
@@ -290,7 +290,7 @@ fn sharing_vertices_or_not_does_not_matter() {
 
 #[test]
 fn the_length_of_a_quaternion_does_not_matter() {
-    check(500, (cases(), -1.5..1.5), |(case, exponent): (Case, f64)| {
+    check(300, (cases(), -1.5..1.5), |(case, exponent): (Case, f64)| {
         let one = case.scene();
         let factor = libm::pow(10.0, exponent);
         fn scaled<S: Copy>(mounted: &Mounted<S>, factor: f64) -> Mounted<S> {
@@ -312,7 +312,7 @@ fn the_length_of_a_quaternion_does_not_matter() {
 #[test]
 fn rendering_again_gives_the_same_bits() {
     // A renderer caches tables and trees between renders: it must not use those of another scene.
-    check(600, (lit_cases(), lit_cases()), |(first, second): (Case, Case)| {
+    check(400, (lit_cases(), lit_cases()), |(first, second): (Case, Case)| {
         let scenes = [first.scene(), second.scene()];
         for (reused, fresh) in renderers().into_iter().zip(renderers()) {
             render(&*reused, &scenes[1]);

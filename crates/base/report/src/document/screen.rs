@@ -52,7 +52,7 @@ fn of_block(block: &Block, chars: usize) -> String {
             let mut text = String::new();
             for one in worst {
                 let of = if one.quantity.is_empty() { String::new() } else { format!(", {}", one.quantity) };
-                let _ = writeln!(text, "{}{of}: {}", one.place, one.words);
+                text += &wrapped(&format!("{}{of}: {}", one.place, one.words), chars);
                 for more in [&one.what, &one.command].into_iter().filter(|more| !more.is_empty()) {
                     let _ = writeln!(text, "{INDENT}{more}");
                 }

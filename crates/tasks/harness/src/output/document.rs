@@ -131,7 +131,8 @@ fn counts(validation: &Validation) -> Vec<Count> {
     let candidates = validation.candidates();
     if !candidates.is_empty() {
         let wrong = candidates.iter().filter(|report| !report.passes()).count() as u64;
-        all.push(one(wrong, "wrong candidates", "of those compared with the exact answers", wrong > 0));
+        let name = if wrong == 1 { "wrong candidate" } else { "wrong candidates" };
+        all.push(one(wrong, name, "of those compared with the exact answers", wrong > 0));
     }
     if counts.not_compared > 0 {
         all.push(one(counts.not_compared, "not compared", "one side has no maps", false));

@@ -143,7 +143,7 @@ pub(super) fn screen_blocks(validation: &Validation, extent: Extent<'_>) -> Scre
         text(ray_sets(validation, room)),
         text(approximations(validation, room)),
         text(candidates(validation, room)),
-        text(times(validation, room)),
+        text(times(validation, room, warnings.is_empty())),
         text(files(validation, extent.folder(), room)),
         text(warnings),
     ];
@@ -277,8 +277,8 @@ fn candidates(validation: &Validation, room: Room) -> String {
     text
 }
 
-/// Stage times: a line for each renderer, then the other stages.
-fn times(validation: &Validation, room: Room) -> String {
+/// Stage times: a line for each renderer, then the other stages. Warnings take the room of some, if the times are not alone.
+fn times(validation: &Validation, room: Room, alone: bool) -> String {
     let mut text = String::new();
     for rendered in &validation.rendered {
         let stages =
@@ -295,7 +295,11 @@ fn times(validation: &Validation, room: Room) -> String {
     if !others.is_empty() {
         text.push_str(&wrap("", others, 1, room));
     }
-    let most = if room == Room::Terminal { MAX_TIME_LINES } else { usize::MAX };
+    let most = match room {
+        Room::Terminal if alone => MAX_TIME_LINES,
+        Room::Terminal => MAX_TIME_LINES / 2,
+        Room::Unlimited => usize::MAX,
+    };
     text.lines().take(most).map(|line| format!("{line}\n")).collect()
 }
 
@@ -356,7 +360,9 @@ fn worst_defects(validation: &Validation, lines_of_warnings: usize, room: Room) 
         // With the blank line between the blocks.
         (Room::Terminal, lines) => (lines + 1).div_ceil(3),
     };
-    let most = if taken > 0 { 1 } else { MAX_DEFECT_LINES } * MAX_COLUMNS;
+    let max_lines = if taken > 0 { 1 } else { MAX_DEFECT_LINES };
+    // Words that do not fit at the end of a line leave some room there.
+    let most = max_lines * MAX_COLUMNS - 16 * (max_lines - 1);
     let of_renderers = defects(validation).into_iter().take(MAX_DEFECTS.saturating_sub(taken));
     let of_candidates = validation.candidates().iter().flat_map(|report| report.misses().take(1));
     let line = |defect: &ListedDefect| {

@@ -222,7 +222,7 @@ fn with_exact_answer(
     let scene = &subject.scene;
     let (ray, max_range) = (scene.ray(sensor, i, j)?, scene.max_range(sensor)?);
     let referee = judge.referee();
-    let Margins { verdict, face, surface } = referee.margins(sensor, i, j)?;
+    let (verdict, Margins { face, surface }) = referee.verdict_with_margins(sensor, i, j)?;
     let exact = verdict.faces.first().and_then(|face| referee.hit(sensor, i, j, *face));
     let exact = exact.map(|hit| hit.in_format(Format::Double));
     let exact_return = match sensor {

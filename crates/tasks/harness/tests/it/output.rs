@@ -229,7 +229,7 @@ fn pages() {
         // The section in which each differs from the others; the whole page once.
         let (start, end) = match name {
             "defective" => ("<!DOCTYPE", "</html>"),
-            "approximate" => ("<h2>The paper's approximations</h2>", "<div class=\"static-maps\">"),
+            "approximate" => ("<h2>The paper&#39;s approximations</h2>", "<div class=\"static-maps\">"),
             "with_candidate" => ("<h2>Candidates</h2>", "<div class=\"static-maps\">"),
             _ => ("<header", "</header>"),
         };
@@ -253,9 +253,7 @@ fn nothing_compared_is_no_pass_anywhere() {
     let validation = fixtures::lonely();
     assert!(junit_xml(&validation).contains("<failure message=\"Nothing was compared\""));
     assert!(summary_json(&validation).contains("\"verdict\": \"nothing_compared\""));
-    for text in
-        [one_screen(&validation, None), summary_markdown(&validation), static_page(&validation)]
-    {
+    for text in [one_screen(&validation, None), summary_markdown(&validation), static_page(&validation)] {
         assert!(text.contains("Nothing was compared"), "{text}");
         assert!(!text.contains("All "), "{text}");
     }
@@ -407,8 +405,9 @@ fn a_wrong_candidate_is_in_every_headline_and_fails() {
         assert!(text.contains("1,495"), "{name}: {text}");
     }
     let [(_, screen), (_, page), (_, markdown), (_, junit)] = every_report(&validation);
-    let last: Vec<&str> = screen.lines().filter(|line| line.starts_with("✗ Candidate mine is wrong")).collect();
-    assert_eq!(last, ["✗ Candidate mine is wrong on 1,495 of 1,920 rays; scanline and tracer: all 2,176 rays"]);
+    let last: Vec<&str> =
+        screen.lines().filter(|line| line.starts_with("✗ Candidate mine is wrong")).collect();
+    assert_eq!(last, ["✗ Candidate mine is wrong on 1,495 of 1,920 rays; scanline and tracer: all 2,176"]);
     assert!(page.split_once("<h1>").unwrap().1.split_once("</h1>").unwrap().0.contains("mine is wrong"));
     assert!(!page.contains("<p>None.</p>"), "the defects of candidates are defects");
     assert!(markdown.starts_with("### ✗ Candidate mine is wrong on 1,495 of 1,920 rays"), "{markdown}");
