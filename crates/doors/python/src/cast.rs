@@ -4,7 +4,7 @@ use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use raypencil::cast::{Answers, FirstHit, GroupAtT, Questions, cast_warnings, cast_with};
-use raypencil::referee::{CastMargin, ExactCast};
+use raypencil::referee::{ExactCast, Margin};
 use raypencil::survey::WarningCode;
 use raypencil::{CastRay, Progress, Side, Sides};
 
@@ -135,7 +135,7 @@ pub(crate) fn arrays_of(answers: &Answers, rays: &[CastRay]) -> Arrays {
         add_all(&mut arrays, all);
     }
     if let Some(margins) = &answers.margins {
-        let both = |margin: &CastMargin| [margin.lo, margin.hi];
+        let both = |margin: &Margin| [margin.lo, margin.hi];
         let faces: Vec<f64> = margins.iter().flat_map(|margins| both(&margins.face)).collect();
         let surfaces: Vec<f64> = margins.iter().flat_map(|margins| both(&margins.surface)).collect();
         let across: Vec<f64> =

@@ -3,25 +3,13 @@
 use raypencil_scene::SensorId;
 
 use crate::face_margin::face_margin;
-use crate::margin::Margin;
+use crate::margin::{Margin, Margins};
 use crate::neighbourhood::Neighbourhood;
 use crate::ray::{Aim, MountedSensor};
 use crate::verdict::{Referee, Verdict};
 
-/// The verdict on a ray, and how far it is from changing.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Margins {
-    /// The nearest faces.
-    pub verdict: Verdict,
-    /// The least displacement that changes the set of nearest faces.
-    pub face: Margin,
-    /// The least displacement at which the ray changes between hit and miss, or at which its range jumps.
-    pub surface: Margin,
-}
-
 impl Referee<'_> {
-    /// The verdict on cell (i, j) and both of its margins; `None` if there is no such cell. Faster than three
-    /// separate calls.
+    /// Both margins of cell (i, j); `None` if there is no such cell.
     ///
     /// ```
     /// # mod wall { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/common/wall.rs")); }
@@ -39,11 +27,16 @@ impl Referee<'_> {
     /// assert!(margins.surface.lo <= 0.5 && 0.5 <= margins.surface.hi);
     /// ```
     pub fn margins(&self, sensor: SensorId, i: u32, j: u32) -> Option<Margins> {
+        self.verdict_with_margins(sensor, i, j).map(|(_, margins)| margins)
+    }
+
+    /// The verdict on cell (i, j) and both of its margins; `None` if there is no such cell. Faster than three separate calls.
+    pub fn verdict_with_margins(&self, sensor: SensorId, i: u32, j: u32) -> Option<(Verdict, Margins)> {
         let (sensor, aim) = self.sensor_and_aim(sensor, i, j)?;
         let (mut near, nearest, face) = self.with_face_margin(&sensor, aim);
         let verdict = Verdict { faces: nearest.iter().map(|&index| near.faces[index].face.id).collect() };
         let surface = near.surface_margin(&nearest, &face);
-        Some(Margins { verdict, face, surface })
+        Some((verdict, Margins { face, surface }))
     }
 
     /// The margin of the set of nearest faces of cell (i, j); `None` if there is no such cell.

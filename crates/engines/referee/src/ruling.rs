@@ -41,7 +41,7 @@ pub struct Tolerance {
     pub unit_roundoff: f64,
 }
 
-/// The referee's ruling on one answer to one ray.
+/// The referee's ruling on one answer to one ray, of a sensor or of none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Ruling {
     /// The exact answer.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use raypencil_referee::{CastHit, CastMargins, ExactCast, SidedFace};
+use raypencil_referee::{CastHit, ExactCast, Margins, SidedFace};
 use raypencil_scene::{CastRay, FaceId, Progress, Reading, Side, Sides, Triangles};
 use raypencil_tracer::{CastTraverser, TracedHit, TracerCast};
 
@@ -64,7 +64,7 @@ pub struct Answers {
     /// All hits of each ray, if they were asked for.
     pub all: Option<Vec<Vec<GroupAtT>>>,
     /// The margins of each ray, if they were asked for.
-    pub margins: Option<Vec<CastMargins>>,
+    pub margins: Option<Vec<Margins>>,
 }
 
 impl Answers {

@@ -302,8 +302,7 @@ impl CastPage<'_> {
             channels.push((name, "", both(real(of, f64::NAN), other)));
         }
         if let Some(margins) = &self.answers.margins {
-            let of =
-                |margin: fn(&raypencil_referee::CastMargins) -> f64| margins.iter().map(margin).collect();
+            let of = |margin: fn(&raypencil_referee::Margins) -> f64| margins.iter().map(margin).collect();
             channels.push(("margin to another face", "m", both(of(|margins| margins.face.lo), None)));
             channels.push(("margin to another surface", "m", both(of(|margins| margins.surface.lo), None)));
         }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use raypencil_referee::{CastMargin, CastMargins};
+use raypencil_referee::{Displacement, Margin, Margins};
 use raypencil_report::{count, counted};
 use raypencil_scene::{CastRay, Reading, Side};
 use serde_json::{Value, json};
@@ -71,8 +71,8 @@ pub fn ray_text(ray: &CastRay, answers: &Answers, index: usize) -> String {
         }
     }
     if let Some(margins) = &answers.margins {
-        let CastMargins { face, surface } = &margins[index];
-        for (name, CastMargin { lo, hi, .. }) in [("face", face), ("surface", surface)] {
+        let Margins { face, surface } = &margins[index];
+        for (name, Margin { lo, hi, .. }) in [("face", face), ("surface", surface)] {
             let _ = writeln!(text, "  margin       {name}: {lo} to {hi}");
         }
     }
@@ -137,8 +137,8 @@ pub fn ray_json(ray: &CastRay, answers: &Answers, index: usize) -> Value {
         answer["all"] = all[index].iter().map(group).collect();
     }
     if let Some(margins) = &answers.margins {
-        let of = |margin: &CastMargin| json!({ "lo": margin.lo, "hi": margin.hi, "witness": margin.witness });
-        let CastMargins { face, surface } = &margins[index];
+        let of = |Margin { lo, hi, witness }: &Margin| json!({ "lo": lo, "hi": hi, "witness": witness.map(Displacement::to_array) });
+        let Margins { face, surface } = &margins[index];
         let across = ray.across().map(|vector| vector.to_array());
         answer["margins"] = json!({ "face": of(face), "surface": of(surface), "across": across });
     }

@@ -6,7 +6,7 @@ use raypencil_files::{
     FileError, FolderError, RayArray, begin_output_folder, write_atomically, write_npy_numbers,
 };
 use raypencil_mesh_io::{FileFacts, FileFrame, FileUnits, UpAxis};
-use raypencil_referee::CastMargin;
+use raypencil_referee::Margin;
 use raypencil_report::VERSION;
 use raypencil_scene::{CastRay, NamedRaySet, Side, Sides, Triangles};
 use serde_json::{Value, json};
@@ -153,7 +153,7 @@ fn write_arrays(
     }
     if let Some(margins) = &answers.margins {
         let with = |last: &[u64]| -> Vec<u64> { shape.iter().chain(last).copied().collect() };
-        let both = |margin: &CastMargin| [margin.lo, margin.hi];
+        let both = |margin: &Margin| [margin.lo, margin.hi];
         let faces: Vec<f64> = margins.iter().flat_map(|margins| both(&margins.face)).collect();
         let surfaces: Vec<f64> = margins.iter().flat_map(|margins| both(&margins.surface)).collect();
         let across: Vec<f64> =

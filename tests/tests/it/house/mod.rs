@@ -7,6 +7,7 @@ mod documents;
 mod floors;
 mod kernels;
 mod light;
+mod nouns;
 mod release;
 mod scene_items;
 mod source;

@@ -47,8 +47,6 @@ use query_ray::QueryRay;
 use triangle::Triangle;
 
 pub use all::{HitGroup, SidedFace};
-pub use margin::{CastMargin, CastMargins};
-pub use ruling::CastRuling;
 pub use values::CastHit;
 
 /// The exact answers to any rays on a mesh.

@@ -42,22 +42,8 @@ use super::{ExactCast, moved_bundle};
 use crate::bvh::RayBundle;
 use crate::number::Interval;
 use crate::rounded_face::least_cosine;
+use crate::ruling::Ruling;
 use crate::{RANGE_ROUNDINGS, aspect};
-
-/// What the exact answer says of a stated one.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum CastRuling {
-    /// It is the exact answer: one of the nearest faces, too near where they are, or a miss where there is none.
-    Same,
-    /// It is the answer for a ray moved sideways by `moved`, along the two vectors of [`CastRay::across`], up to the
-    /// errors of ranges.
-    Rounding {
-        /// The displacement, each part at most [`ExactCast::lateral_error`].
-        moved: [f64; 2],
-    },
-    /// Neither.
-    Wrong,
-}
 
 /// How often the errors of the rule are charged, sideways: 8 u S twice.
 const LATERAL: f64 = 16.0;
@@ -65,11 +51,12 @@ const LATERAL: f64 = 16.0;
 const ALONG: f64 = 2.0 * RANGE_ROUNDINGS;
 
 impl ExactCast<'_> {
-    /// Rules on the first hit that a program of this precision states, or on what it states in place of one.
+    /// Rules on the first hit that a program of this precision states, or on what it states in place of one. A displacement is
+    /// along the two vectors of [`CastRay::across`], each part at most [`Self::lateral_error`].
     ///
     /// ```
     /// use glam::DVec3;
-    /// use raypencil_referee::{CastRuling, ExactCast};
+    /// use raypencil_referee::{ExactCast, Ruling};
     /// use raypencil_scene::{CastRay, FaceId, Precision, Reading, Sides, Triangles};
     ///
     /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
@@ -79,42 +66,35 @@ impl ExactCast<'_> {
     ///     let ray = CastRay::new(DVec3::new(x, 0.25, 1.0), DVec3::NEG_Z);
     ///     cast.rule(&ray, Sides::Both, stated, Precision::F64)
     /// };
-    /// assert_eq!(rule(0.0, Reading::Hit(FaceId(0))), CastRuling::Same);
+    /// assert_eq!(rule(0.0, Reading::Hit(FaceId(0))), Ruling::Exact);
     /// // It may be missed on its border, and not a micrometre inside.
-    /// assert!(matches!(rule(0.0, Reading::Miss), CastRuling::Rounding { .. }));
-    /// assert_eq!(rule(1e-6, Reading::Miss), CastRuling::Wrong);
-    /// assert_eq!(rule(-1e-6, Reading::Hit(FaceId(0))), CastRuling::Wrong);
+    /// assert!(matches!(rule(0.0, Reading::Miss), Ruling::Rounding(_)));
+    /// assert_eq!(rule(1e-6, Reading::Miss), Ruling::Wrong);
+    /// assert_eq!(rule(-1e-6, Reading::Hit(FaceId(0))), Ruling::Wrong);
     /// # Ok::<(), raypencil_scene::SceneError>(())
     /// ```
-    pub fn rule(
-        &self,
-        ray: &CastRay,
-        sides: Sides,
-        stated: Reading<FaceId>,
-        precision: Precision,
-    ) -> CastRuling {
+    pub fn rule(&self, ray: &CastRay, sides: Sides, stated: Reading<FaceId>, precision: Precision) -> Ruling {
         let first = self.nearest(ray, sides);
-        let is_same = match (stated, self.read(ray, &first)) {
-            (Reading::Hit(face), Reading::Hit(met)) => met.iter().any(|met| met.id == face),
-            (Reading::TooNear, Reading::TooNear) | (Reading::Miss, Reading::Miss) => true,
-            _ => false,
-        };
-        if is_same {
-            return CastRuling::Same;
+        match (stated, self.read(ray, &first)) {
+            (Reading::Hit(face), Reading::Hit(met)) if met.iter().any(|met| met.id == face) => {
+                return if met.len() == 1 { Ruling::Exact } else { Ruling::Tie };
+            }
+            (Reading::TooNear, Reading::TooNear) | (Reading::Miss, Reading::Miss) => return Ruling::Exact,
+            _ => {}
         }
         let stated = match stated {
             Reading::Hit(face) => match self.triangle(face).filter(Triangle::has_area) {
                 Some(face) => Reading::Hit(face),
-                None => return CastRuling::Wrong,
+                None => return Ruling::Wrong,
             },
             // Nothing is too near for a ray of no such sensor.
-            Reading::TooNear if ray.t_blind == 0.0 => return CastRuling::Wrong,
+            Reading::TooNear if ray.t_blind == 0.0 => return Ruling::Wrong,
             Reading::TooNear => Reading::TooNear,
             Reading::Miss => Reading::Miss,
         };
         let trial = Trial { cast: self, ray, sides, precision, frame: Frame::new(ray), stated };
         let witness = trial.displacements(&first).into_iter().find(|&by| trial.excuses(by));
-        witness.map_or(CastRuling::Wrong, |moved| CastRuling::Rounding { moved })
+        witness.map_or(Ruling::Wrong, |moved| Ruling::Rounding(moved.into()))
     }
 
     /// How far sideways the edges of faces may seem to be moved for a program of this precision: 16 u S, in the

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use proptest::prelude::*;
-use raypencil_referee::{CastMargin, ExactCast};
+use raypencil_referee::{Displacement, ExactCast, Margin};
 use raypencil_scene::{CastRay, FaceId, Reading, Sides, Triangles};
 
 /// A ray straight down. Across it, u is y and v is x.
@@ -16,7 +16,7 @@ fn mesh(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Triangles {
 
 /// The margin is this number, but for a few units in the last place of both ends.
 #[track_caller]
-fn assert_is(margin: CastMargin, expected: f64) {
+fn assert_is(margin: Margin, expected: f64) {
     let close = 1e-11 * expected;
     assert!(margin.lo <= expected && margin.lo >= expected - close, "{margin:?} is not {expected}");
     assert!(margin.hi >= expected && margin.hi <= expected * 1.001 + 1e-300, "{margin:?} is not {expected}");
@@ -67,7 +67,7 @@ fn a_slanted_face_that_comes_too_near_ends_both_margins() {
         assert_is(margins.surface, expected);
         // The witness is on the other side.
         let by = margins.face.witness.expect("a witness");
-        assert_eq!(x + by[1] > 1.0, x < 1.0, "{margins:?}");
+        assert_eq!(x + by.dy > 1.0, x < 1.0, "{margins:?}");
     }
     // At exactly t = 3 it is measured, and the smallest displacement makes it too near.
     assert!(at(1.0).face.lo == 0.0 && at(1.0).face.hi < 1e-12, "{:?}", at(1.0));
@@ -133,6 +133,50 @@ fn the_ends_of_the_ray_cut_faces_off() {
     let power = libm::scalbn(1.0, 60);
     let long = CastRay { direction: ray.direction / power, t_max: 6.25 * power, ..ray };
     assert_is(cast.margins(&long, Sides::Both).surface, 0.25);
+}
+
+/// The condition of an end is 0 all over a face that lies in it, and ends it nowhere: the diagonal of a square there is as
+/// little a jump as elsewhere.
+#[test]
+fn a_surface_that_lies_in_an_end_of_the_ray_ends_at_its_border_alone() {
+    let square =
+        mesh(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2], [0, 2, 3]]);
+    let cast = ExactCast::new(&square);
+    for (x, y, expected) in [(0.5, 0.25, 0.25), (0.5, 0.5, 0.5), (0.125, 0.75, 0.125)] {
+        let ray = down(x, y, 8.0);
+        for ended in [CastRay { t_max: 8.0, ..ray }, CastRay { t_min: 8.0, ..ray }] {
+            for sides in [Sides::Both, Sides::Fronts] {
+                let margins = cast.margins(&ended, sides);
+                assert_is(margins.surface, expected);
+                let by = margins.surface.witness.expect("a witness").to_array();
+                assert!(cast.first_moved(&ended, sides, by).is_empty(), "{margins:?}");
+            }
+        }
+    }
+}
+
+/// Another face enters a hundred billionth before the nearest one ends. That is no event of its own, but what is proven is the
+/// smaller size.
+#[test]
+fn a_face_that_enters_a_little_before_the_nearest_ends_lowers_the_proven_size() {
+    let (end, start) = (0.5, 0.5 * (1.0 - 1e-11));
+    let both = mesh(
+        &[
+            [-9.0, -9.0, 0.0],
+            [end, -9.0, 0.0],
+            [end, 9.0, 0.0],
+            [start, -9.0, 1.0],
+            [9.0, -9.0, 1.0],
+            [start, 9.0, 1.0],
+        ],
+        &[[0, 1, 2], [3, 4, 5]],
+    );
+    let cast = ExactCast::new(&both);
+    let ray = down(0.0, 0.0, 4.0);
+    assert_eq!(cast.first_moved(&ray, Sides::Both, [0.0, start * ray.across()[1].x]), [FaceId(1)]);
+    let Margin { lo, hi, .. } = cast.margins(&ray, Sides::Both).face;
+    assert!(lo <= start && start <= hi, "{lo} {hi}");
+    assert!(hi - lo < 1e-10);
 }
 
 #[test]
@@ -354,7 +398,7 @@ fn no_change_within_the_margins(
     prop_assert_eq!(own.1, cast.reading(&ray, Sides::Both) == Reading::TooNear);
     let first_t = moved_t(&cast, &ray, [0.0; 2]);
     if let Some(witness) = face.witness {
-        prop_assert!(answer(witness) != own, "{margins:?}");
+        prop_assert!(answer(witness.to_array()) != own, "{margins:?}");
     }
     // A witness of the surface is just beyond a jump: nearby t differs, however near.
     // An end of the ray that touches a corner leaves a single place, which no rounded ray finds.
@@ -363,7 +407,8 @@ fn no_change_within_the_margins(
     let is_touched = vertices
         .iter()
         .any(|v| [ray.t_min, ray.t_max, ray.t_blind].iter().any(|end| (t_of(v) - end).abs() < 1e-9));
-    if let Some(at) = surface.witness.filter(|_| !own.0.is_empty() && !is_touched) {
+    if let Some(at) = surface.witness.map(Displacement::to_array).filter(|_| !own.0.is_empty() && !is_touched)
+    {
         let step = 1e-7 * (1.0 + size(at));
         // Places all round, for the jump may be in a narrow wedge.
         let round = (0..128).map(|k| {
@@ -489,6 +534,6 @@ fn the_witness_of_a_needle_is_inside_it() {
     let ray = down(0.0, 0.0, 1.0);
     let margins = cast.margins(&ray, Sides::Both);
     let witness = margins.face.witness.expect("a witness");
-    assert_eq!(cast.first_moved(&ray, Sides::Both, witness), [FaceId(0)]);
+    assert_eq!(cast.first_moved(&ray, Sides::Both, witness.to_array()), [FaceId(0)]);
     assert!(margins.face.lo <= 0.25 && margins.face.hi < 0.5, "{margins:?}");
 }

@@ -1,7 +1,7 @@
 //! What rounding excuses, and what it does not, on cases that are plain by hand.
 
 use glam::DVec3;
-use raypencil_referee::{CastRuling, ExactCast};
+use raypencil_referee::{ExactCast, Ruling};
 use raypencil_scene::{CastRay, FaceId, Precision, Reading, Sides, Triangles};
 
 fn down(x: f64, y: f64) -> CastRay {
@@ -17,17 +17,17 @@ fn squares(heights: &[f64]) -> Triangles {
     Triangles::new(vertices, faces.collect()).unwrap()
 }
 
-fn rule(mesh: &Triangles, ray: &CastRay, stated: Option<u32>) -> CastRuling {
+fn rule(mesh: &Triangles, ray: &CastRay, stated: Option<u32>) -> Ruling {
     let stated = stated.map_or(Reading::Miss, |face| Reading::Hit(FaceId(face)));
     ExactCast::new(mesh).rule(ray, Sides::Both, stated, Precision::F64)
 }
 
-fn rule_too_near(mesh: &Triangles, ray: &CastRay) -> CastRuling {
+fn rule_too_near(mesh: &Triangles, ray: &CastRay) -> Ruling {
     ExactCast::new(mesh).rule(ray, Sides::Both, Reading::TooNear, Precision::F64)
 }
 
-fn is_rounding(ruling: CastRuling) -> bool {
-    matches!(ruling, CastRuling::Rounding { .. })
+fn is_rounding(ruling: Ruling) -> bool {
+    matches!(ruling, Ruling::Rounding(_))
 }
 
 #[test]
@@ -35,14 +35,13 @@ fn no_ray_slips_through_a_shared_edge() {
     let mesh = squares(&[0.0]);
     for share in [0.125, 0.5, 0.75] {
         let ray = down(share, share);
-        assert_eq!(rule(&mesh, &ray, None), CastRuling::Wrong);
+        assert_eq!(rule(&mesh, &ray, None), Ruling::Wrong);
         // Both faces tie.
-        assert_eq!(rule(&mesh, &ray, Some(0)), CastRuling::Same);
-        assert_eq!(rule(&mesh, &ray, Some(1)), CastRuling::Same);
+        assert_eq!([0, 1].map(|face| rule(&mesh, &ray, Some(face))), [Ruling::Tie; 2]);
     }
     // One step of f64 beside it, the other face is as good; a micrometre beside it is not.
     assert!(is_rounding(rule(&mesh, &down(0.5_f64.next_up(), 0.5), Some(1))));
-    assert_eq!(rule(&mesh, &down(0.5 + 1e-6, 0.5), Some(1)), CastRuling::Wrong);
+    assert_eq!(rule(&mesh, &down(0.5 + 1e-6, 0.5), Some(1)), Ruling::Wrong);
 }
 
 #[test]
@@ -50,13 +49,13 @@ fn on_the_outline_a_hit_may_be_missed_and_found() {
     let mesh = squares(&[0.0]);
     assert!(is_rounding(rule(&mesh, &down(0.5, 0.0), None)));
     assert!(is_rounding(rule(&mesh, &down(0.5, -1e-17), Some(0))));
-    assert_eq!(rule(&mesh, &down(0.5, -1e-12), Some(0)), CastRuling::Wrong);
-    assert_eq!(rule(&mesh, &down(0.5, 1e-12), None), CastRuling::Wrong);
+    assert_eq!(rule(&mesh, &down(0.5, -1e-12), Some(0)), Ruling::Wrong);
+    assert_eq!(rule(&mesh, &down(0.5, 1e-12), None), Ruling::Wrong);
     // In single precision, a thousand times as much.
     let exact = ExactCast::new(&mesh);
     let single = |y: f64| exact.rule(&down(0.5, y), Sides::Both, Reading::Hit(FaceId(0)), Precision::F32);
     assert!(is_rounding(single(-1e-12)));
-    assert_eq!(single(-1e-4), CastRuling::Wrong);
+    assert_eq!(single(-1e-4), Ruling::Wrong);
 }
 
 #[test]
@@ -64,33 +63,33 @@ fn a_witness_is_a_ray_with_that_answer() {
     let mesh = squares(&[0.0]);
     let exact = ExactCast::new(&mesh);
     let ray = down(0.5, 0.0);
-    let CastRuling::Rounding { moved } = exact.rule(&ray, Sides::Both, Reading::Miss, Precision::F64) else {
+    let Ruling::Rounding(by) = exact.rule(&ray, Sides::Both, Reading::Miss, Precision::F64) else {
         panic!("a miss on the outline is rounding")
     };
     let most = exact.lateral_error(&ray, Precision::F64);
     // S = 1 + 3.
     assert_eq!(most, 16.0 * 4.0 * f64::EPSILON / 2.0);
-    assert!(moved.iter().all(|part| part.abs() <= most));
-    assert!(exact.first_moved(&ray, Sides::Both, moved).is_empty());
+    assert!(by.max_norm() <= most);
+    assert!(exact.first_moved(&ray, Sides::Both, by.to_array()).is_empty());
 }
 
 #[test]
 fn faces_that_are_nearly_as_near_may_change_places() {
     let near = squares(&[0.0, -1e-16]);
-    assert_eq!(rule(&near, &down(0.75, 0.25), Some(0)), CastRuling::Same);
+    assert_eq!(rule(&near, &down(0.75, 0.25), Some(0)), Ruling::Exact);
     assert!(is_rounding(rule(&near, &down(0.75, 0.25), Some(2))));
     // 72 kappa u S / c = 72 x 1 x 2^-53 x 4 is 3.2e-14, for each of the two; kappa is sqrt(2) here.
     let apart = squares(&[0.0, -1e-12]);
-    assert_eq!(rule(&apart, &down(0.75, 0.25), Some(2)), CastRuling::Wrong);
+    assert_eq!(rule(&apart, &down(0.75, 0.25), Some(2)), Ruling::Wrong);
 }
 
 #[test]
 fn what_is_behind_the_first_hit_is_wrong() {
     let mesh = squares(&[0.0, -1.0]);
-    assert_eq!(rule(&mesh, &down(0.75, 0.25), Some(2)), CastRuling::Wrong);
-    assert_eq!(rule(&mesh, &down(0.75, 0.25), None), CastRuling::Wrong);
+    assert_eq!(rule(&mesh, &down(0.75, 0.25), Some(2)), Ruling::Wrong);
+    assert_eq!(rule(&mesh, &down(0.75, 0.25), None), Ruling::Wrong);
     // Faces that the mesh does not have.
-    assert_eq!(rule(&mesh, &down(0.75, 0.25), Some(4)), CastRuling::Wrong);
+    assert_eq!(rule(&mesh, &down(0.75, 0.25), Some(4)), Ruling::Wrong);
     // The lower square is seen past the outline of the upper one only from beside it.
     let mesh = Triangles::new(
         vec![
@@ -105,7 +104,7 @@ fn what_is_behind_the_first_hit_is_wrong() {
     )
     .unwrap();
     assert!(is_rounding(rule(&mesh, &down(0.5, 0.0), Some(1))));
-    assert_eq!(rule(&mesh, &down(0.5, 1e-9), Some(1)), CastRuling::Wrong);
+    assert_eq!(rule(&mesh, &down(0.5, 1e-9), Some(1)), Ruling::Wrong);
     // At a corner of it too, over either edge.
     assert!(is_rounding(rule(&mesh, &down(0.0, 0.0), Some(1))));
 }
@@ -115,18 +114,18 @@ fn the_ends_of_a_ray_are_as_uncertain_as_ranges() {
     let mesh = squares(&[0.0]);
     let up_to = |t_max: f64| CastRay { t_max, ..down(0.75, 0.25) };
     let from = |t_min: f64| CastRay { t_min, ..down(0.75, 0.25) };
-    assert_eq!(rule(&mesh, &up_to(3.0), Some(0)), CastRuling::Same);
+    assert_eq!(rule(&mesh, &up_to(3.0), Some(0)), Ruling::Exact);
     assert!(is_rounding(rule(&mesh, &up_to(3.0), None)));
     assert!(is_rounding(rule(&mesh, &up_to(3.0_f64.next_down()), Some(0))));
-    assert_eq!(rule(&mesh, &up_to(3.0 - 1e-9), Some(0)), CastRuling::Wrong);
+    assert_eq!(rule(&mesh, &up_to(3.0 - 1e-9), Some(0)), Ruling::Wrong);
     assert!(is_rounding(rule(&mesh, &from(3.0), None)));
     assert!(is_rounding(rule(&mesh, &from(3.0_f64.next_up()), Some(0))));
-    assert_eq!(rule(&mesh, &from(3.0 + 1e-9), Some(0)), CastRuling::Wrong);
-    assert_eq!(rule(&mesh, &from(3.0 - 1e-9), None), CastRuling::Wrong);
+    assert_eq!(rule(&mesh, &from(3.0 + 1e-9), Some(0)), Ruling::Wrong);
+    assert_eq!(rule(&mesh, &from(3.0 - 1e-9), None), Ruling::Wrong);
     // A face behind the start is not met, were it by the smallest length that counts.
     assert!(is_rounding(rule(&mesh, &CastRay::new(DVec3::new(0.75, 0.25, -1e-17), DVec3::NEG_Z), Some(0))));
     let behind = CastRay::new(DVec3::new(0.75, 0.25, -1e-9), DVec3::NEG_Z);
-    assert_eq!(rule(&mesh, &behind, Some(0)), CastRuling::Wrong);
+    assert_eq!(rule(&mesh, &behind, Some(0)), Ruling::Wrong);
 }
 
 #[test]
@@ -136,21 +135,21 @@ fn nobody_sees_through_what_is_too_near_or_misses_it() {
     let blind = |t_blind: f64| CastRay { t_blind, ..down(0.75, 0.25) };
     for t_blind in [3.0 + 1e-9, 3.5, 4.0, 5.0] {
         let ray = blind(t_blind);
-        assert_eq!(rule_too_near(&mesh, &ray), CastRuling::Same);
+        assert_eq!(rule_too_near(&mesh, &ray), Ruling::Exact);
         // Neither the plate nor the floor, were it measured by itself, nor nothing.
         for stated in [Some(0), Some(2), None] {
-            assert_eq!(rule(&mesh, &ray, stated), CastRuling::Wrong, "{t_blind} {stated:?}");
+            assert_eq!(rule(&mesh, &ray, stated), Ruling::Wrong, "{t_blind} {stated:?}");
         }
     }
     // The plate is measured: it is not too near, for a sensor or for none.
     for t_blind in [0.0, 1.0, 3.0 - 1e-9] {
-        assert_eq!(rule(&mesh, &blind(t_blind), Some(0)), CastRuling::Same);
-        assert_eq!(rule_too_near(&mesh, &blind(t_blind)), CastRuling::Wrong, "{t_blind}");
+        assert_eq!(rule(&mesh, &blind(t_blind), Some(0)), Ruling::Exact);
+        assert_eq!(rule_too_near(&mesh, &blind(t_blind)), Ruling::Wrong, "{t_blind}");
     }
     // Beside the plates nothing is met.
     let beside = CastRay { t_blind: 3.5, ..down(2.0, 0.25) };
-    assert_eq!(rule(&mesh, &beside, None), CastRuling::Same);
-    assert_eq!(rule_too_near(&mesh, &beside), CastRuling::Wrong);
+    assert_eq!(rule(&mesh, &beside, None), Ruling::Exact);
+    assert_eq!(rule_too_near(&mesh, &beside), Ruling::Wrong);
 }
 
 #[test]
@@ -158,9 +157,9 @@ fn the_shortest_range_is_as_uncertain_as_ranges() {
     let mesh = squares(&[0.0, -1.0]);
     let blind = |t_blind: f64| CastRay { t_blind, ..down(0.75, 0.25) };
     // At exactly the shortest range it is measured, one step before it is too near; rounding may take either for the other.
-    assert_eq!(rule(&mesh, &blind(3.0), Some(0)), CastRuling::Same);
+    assert_eq!(rule(&mesh, &blind(3.0), Some(0)), Ruling::Exact);
     assert!(is_rounding(rule_too_near(&mesh, &blind(3.0))));
-    assert_eq!(rule_too_near(&mesh, &blind(3.0_f64.next_up())), CastRuling::Same);
+    assert_eq!(rule_too_near(&mesh, &blind(3.0_f64.next_up())), Ruling::Exact);
     assert!(is_rounding(rule(&mesh, &blind(3.0_f64.next_up()), Some(0))));
     // The bound is that of the range: 72 kappa u S / c, with kappa = sqrt(2), S = 1 + 3 and c = 1.
     let exact = ExactCast::new(&mesh);
@@ -169,12 +168,12 @@ fn the_shortest_range_is_as_uncertain_as_ranges() {
         let of = |t_blind: f64, stated| exact.rule(&blind(t_blind), Sides::Both, stated, precision);
         let (plate, near) = (Reading::Hit(FaceId(0)), Reading::TooNear);
         assert!(is_rounding(of(3.0 + 0.9 * bound, plate)) && is_rounding(of(3.0 - 0.9 * bound, near)));
-        assert_eq!(of(3.0 + 1.1 * bound, plate), CastRuling::Wrong);
-        assert_eq!(of(3.0 - 1.1 * bound, near), CastRuling::Wrong);
+        assert_eq!(of(3.0 + 1.1 * bound, plate), Ruling::Wrong);
+        assert_eq!(of(3.0 - 1.1 * bound, near), Ruling::Wrong);
         // Whoever passes through the plate, or misses it, is wrong however near the limit is.
         for stated in [Reading::Hit(FaceId(2)), Reading::Miss] {
-            assert_eq!(of(3.0 + 0.5 * bound, stated), CastRuling::Wrong);
-            assert_eq!(of(3.0 - 0.5 * bound, stated), CastRuling::Wrong);
+            assert_eq!(of(3.0 + 0.5 * bound, stated), Ruling::Wrong);
+            assert_eq!(of(3.0 - 0.5 * bound, stated), Ruling::Wrong);
         }
     }
 }
@@ -192,11 +191,11 @@ fn on_the_outline_of_what_is_too_near_a_ray_may_pass_it() {
     ];
     let mesh = Triangles::new(corners.to_vec(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
     let blind = |y: f64| CastRay { t_blind: 3.5, ..down(0.5, y) };
-    assert_eq!(rule_too_near(&mesh, &blind(0.0)), CastRuling::Same);
+    assert_eq!(rule_too_near(&mesh, &blind(0.0)), Ruling::Exact);
     assert!(is_rounding(rule(&mesh, &blind(0.0), Some(1))));
-    assert_eq!(rule(&mesh, &blind(1e-9), Some(1)), CastRuling::Wrong);
+    assert_eq!(rule(&mesh, &blind(1e-9), Some(1)), Ruling::Wrong);
     assert!(is_rounding(rule_too_near(&mesh, &blind(-1e-17))));
-    assert_eq!(rule_too_near(&mesh, &blind(-1e-9)), CastRuling::Wrong);
+    assert_eq!(rule_too_near(&mesh, &blind(-1e-9)), Ruling::Wrong);
     // Past the tip of a needle too.
     let width = libm::scalbn(1.0, -40);
     let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, width, 0.0]];
@@ -210,8 +209,8 @@ fn a_side_that_does_not_count_is_no_excuse() {
     let mesh = squares(&[0.0]);
     let exact = ExactCast::new(&mesh);
     let up = CastRay::new(DVec3::new(0.75, 0.25, -3.0), DVec3::Z);
-    assert_eq!(exact.rule(&up, Sides::Fronts, Reading::Miss, Precision::F64), CastRuling::Same);
-    assert_eq!(exact.rule(&up, Sides::Fronts, Reading::Hit(FaceId(0)), Precision::F64), CastRuling::Wrong);
+    assert_eq!(exact.rule(&up, Sides::Fronts, Reading::Miss, Precision::F64), Ruling::Exact);
+    assert_eq!(exact.rule(&up, Sides::Fronts, Reading::Hit(FaceId(0)), Precision::F64), Ruling::Wrong);
 }
 
 /// The back of a face does not count, unless the program cannot tell it from the front: up to a cosine of 2 (5 kappa + 15) u.
@@ -226,6 +225,6 @@ fn the_back_of_a_face_that_is_edge_on_may_be_hit() {
     let rule = |unit_roundoff: f64| {
         ExactCast::new(&mesh).rule(&ray, Sides::Fronts, Reading::Hit(FaceId(0)), Precision { unit_roundoff })
     };
-    assert_eq!(rule(0.99 * least), CastRuling::Wrong);
+    assert_eq!(rule(0.99 * least), Ruling::Wrong);
     assert!(is_rounding(rule(1.01 * least)));
 }

@@ -142,8 +142,8 @@ fn record_ray(
 ) {
     let (width, height) = scene.size(id).expect("a sensor");
     let (i, j) = (random.below(width), random.below(height));
-    let margins = referee.margins(id, i, j).expect("a cell");
-    transcript.record("verdicts", &margins.verdict);
+    let (verdict, margins) = referee.verdict_with_margins(id, i, j).expect("a cell");
+    transcript.record("verdicts", &verdict);
     transcript.record("face margins", &margins.face);
     transcript.record("surface margins", &margins.surface);
     transcript.record("values", &referee.values(id, i, j));

@@ -151,9 +151,9 @@ fn no_pair_of_displacements_within_lo_has_a_jump_between_and_the_witness_has() {
         for _ in 0..60 {
             let cell = cell(&scene, &mut random);
             let (sensor, i, j) = cell;
-            let margins = referee.margins(sensor, i, j).unwrap();
-            let is_hit = margins.verdict.is_hit();
-            assert_eq!(Some(margins.verdict), referee.verdict(sensor, i, j));
+            let (verdict, margins) = referee.verdict_with_margins(sensor, i, j).unwrap();
+            let is_hit = verdict.is_hit();
+            assert_eq!(Some(verdict), referee.verdict(sensor, i, j));
             let Margin { lo, hi, witness } = margins.surface;
             assert!(
                 margins.face.lo <= lo && lo <= hi && hi <= 1.0,
@@ -222,8 +222,9 @@ fn one_call_answers_as_three_do() {
     let mut random = SplitMix64(5);
     for _ in 0..300 {
         let (sensor, i, j) = cell(&scene, &mut random);
-        let margins = referee.margins(sensor, i, j).unwrap();
-        assert_eq!(Some(margins.verdict), referee.verdict(sensor, i, j));
+        let (verdict, margins) = referee.verdict_with_margins(sensor, i, j).unwrap();
+        assert_eq!(referee.margins(sensor, i, j), Some(margins));
+        assert_eq!(Some(verdict), referee.verdict(sensor, i, j));
         assert_eq!(Some(margins.face), referee.face_margin(sensor, i, j));
         assert_eq!(Some(margins.surface), referee.surface_margin(sensor, i, j));
     }
@@ -329,14 +330,14 @@ fn faces_at_one_place_have_the_margins_of_one() {
     let (one, many) = (Referee::new(&one), Referee::new(&many));
     let mut ends = 0;
     for i in 0..9 {
-        let (a, b) =
-            (one.margins(SensorId::Camera, i, 4).unwrap(), many.margins(SensorId::Camera, i, 4).unwrap());
+        let [(of_a, a), (of_b, b)] =
+            [&one, &many].map(|referee| referee.verdict_with_margins(SensorId::Camera, i, 4).unwrap());
         // The same change at the same place. The proven radius depends in its last digits on how many faces were looked at.
         for (a, b) in [(a.face, b.face), (a.surface, b.surface)] {
             assert_eq!((a.hi, a.witness), (b.hi, b.witness), "column {i}");
             assert!((a.lo - b.lo).abs() <= 1.0 / f64::from(1_u32 << 30), "column {i}: {} {}", a.lo, b.lo);
         }
-        assert_eq!(a.verdict.faces.len() * COPIES, b.verdict.faces.len(), "column {i}");
+        assert_eq!(of_a.faces.len() * COPIES, of_b.faces.len(), "column {i}");
         ends += usize::from(b.surface.lo < 1.0);
     }
     // The column whose ray ends half a cell beside the wall's side, and the next one.

@@ -134,10 +134,10 @@ mod tests {
         let referee = Referee::new(&scene);
         // Most middle rays hit the target or a face before it. Many of them have another answer within 1e-3 cells.
         let margins: Vec<_> =
-            (0..MAX_BEAMS).filter_map(|k| referee.margins(SensorId::Beam(k), 8, 1)).collect();
-        let hits = margins.iter().filter(|margins| margins.verdict.is_hit()).count();
+            (0..MAX_BEAMS).filter_map(|k| referee.verdict_with_margins(SensorId::Beam(k), 8, 1)).collect();
+        let hits = margins.iter().filter(|(verdict, _)| verdict.is_hit()).count();
         assert!(hits > MAX_BEAMS / 2, "{hits} of {MAX_BEAMS} hit");
-        let close = margins.iter().filter(|margins| margins.face.lo < 1e-3).count();
+        let close = margins.iter().filter(|(_, margins)| margins.face.lo < 1e-3).count();
         assert!(close > MAX_BEAMS / 4, "{close} of {MAX_BEAMS} are close to another answer");
     }
 }

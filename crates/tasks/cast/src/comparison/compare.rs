@@ -19,7 +19,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use raypencil_referee::{CastHit, CastRuling, ExactCast, Rounded, aspect};
+use raypencil_referee::{CastHit, ExactCast, Rounded, Ruling, aspect};
 use raypencil_scene::{CastRay, FaceId, Precision, Progress, Reading, Sides, Triangles};
 
 use super::stated::Stated;
@@ -139,16 +139,16 @@ impl Judge<'_> {
             _ => false,
         };
         let ruling = match is_same {
-            true => CastRuling::Same,
+            true => Ruling::Exact,
             false => self.exact.rule(ray, self.sides, stated, self.precision),
         };
         match ruling {
-            CastRuling::Rounding { moved } => judged(RayVerdict::Rounding { moved }),
-            CastRuling::Wrong => {
+            Ruling::Rounding(by) => judged(RayVerdict::Rounding { moved: by.to_array() }),
+            Ruling::Wrong => {
                 let exact = read.clone().map(|faces| faces[0]);
                 judged(RayVerdict::Wrong(Wrong::Hit { stated, exact }))
             }
-            CastRuling::Same => {
+            Ruling::Exact | Ruling::Tie => {
                 let hit = stated.hit().and_then(|face| self.exact.values(ray, *face));
                 let (wrong, ratios) = match hit {
                     None => (None, [None; 7]),
@@ -198,7 +198,7 @@ impl Judge<'_> {
             Reading::TooNear => true,
             Reading::Miss => false,
             Reading::Hit(_) => {
-                self.exact.rule(ray, self.sides, Reading::TooNear, self.precision) != CastRuling::Wrong
+                self.exact.rule(ray, self.sides, Reading::TooNear, self.precision) != Ruling::Wrong
             }
         };
         if is_too_near { Reading::TooNear } else { Reading::Miss }

@@ -31,14 +31,14 @@ pub(super) fn uncertain_fluxes(
     let Place { sensor, i, j } = place;
     let SensorId::Beam(beam) = sensor else { return Vec::new() };
     let (judge, referee) = (truth.judge(), truth.judge().referee());
-    let Some(margins) = referee.margins(sensor, i, j) else { return Vec::new() };
+    let Some((verdict, margins)) = referee.verdict_with_margins(sensor, i, j) else { return Vec::new() };
     let margins_of_return = referee.visibility_margins(beam, i, j);
     let is_close = |margins: &VisibilityMargins| {
         margins.visibility.lo < MAX_UNCERTAIN_MARGIN_CELLS
             || margins.landing.is_none_or(|[lo, _]| lo < MAX_UNCERTAIN_MARGIN_CELLS)
     };
     if margins.face.lo >= MAX_UNCERTAIN_MARGIN_CELLS
-        && margins.verdict.faces.len() < 2
+        && verdict.faces.len() < 2
         && !margins_of_return.as_ref().is_some_and(is_close)
     {
         return Vec::new();

@@ -63,7 +63,7 @@ fn flux_on(answers: &Answers, sensor: SensorId) -> Vec<Option<&Image<f64>>> {
 
 fn describe(checked: &Checked, truth: &GroundTruth<'_>, place: Place) -> DescribedRay {
     let referee = truth.judge().referee();
-    let margins = referee.margins(place.sensor, place.i, place.j);
+    let (verdict, margins) = referee.verdict_with_margins(place.sensor, place.i, place.j).unzip();
     let hit = referee.values(place.sensor, place.i, place.j).map(|hit| hit.in_format(Format::Double));
     let (back, of_view) = match place.sensor {
         SensorId::Camera => (None, None),
@@ -74,7 +74,7 @@ fn describe(checked: &Checked, truth: &GroundTruth<'_>, place: Place) -> Describ
             (back, referee.visibility_margins(beam, place.i, place.j))
         }
     };
-    let faces = margins.as_ref().map(|margins| margins.verdict.faces.iter().map(|face| face.0).collect());
+    let faces = verdict.map(|verdict| verdict.faces.iter().map(|face| face.0).collect());
     let said = check_ray_against(truth, &checked.recorded, place);
     let said = said.map_or(String::new(), |ray| ray.text(&checked.recorded.name));
     let text = format!("{place}\n{said}  again: {}\n", checked.repro(place));

@@ -14,7 +14,8 @@ use super::flat::{FlatFace, Linear};
 use super::frame::{Frame, FrameNumbers};
 use super::nearby::Nearby;
 use super::region::{Bounded, least_size};
-use super::{CastMargin, ExactCast};
+use super::{ExactCast, within};
+use crate::margin::Margin;
 use crate::number::{Dyadic, Interval, Number};
 
 /// A face that the direction of the ray sees from one side.
@@ -38,7 +39,7 @@ enum EventKind {
 }
 
 impl ExactCast<'_> {
-    pub(super) fn face_margin(&self, frame: &Frame<'_>, nearest: &[&Triangle], sides: Sides) -> CastMargin {
+    pub(super) fn face_margin(&self, frame: &Frame<'_>, nearest: &[&Triangle], sides: Sides) -> Margin {
         let cap = self.diagonal;
         let query = QueryRay::new(frame.ray);
         let seen = |face: &'_ Triangle| face.seen_side(&query);
@@ -74,16 +75,16 @@ impl ExactCast<'_> {
                 }
                 let Some(side) = seen(face).filter(|side| sides.include(*side)) else { continue };
                 let entering = SeenFace { face, side };
-                // An edge shared with a nearest face gives the same size but for rounding: no new event.
+                // An edge shared with a nearest face gives the same size but for rounding: no new event, but the proven size may
+                // be the smaller one.
                 let enough = lo * (1.0 - 1.0 / (1u64 << 30) as f64);
-                if let Some(event) = entering.event(frame, nearest.first(), enough) {
-                    lo = lo.min(event.size[0]);
-                    events.push(event);
-                }
+                let (least, event) = entering.event(frame, nearest.first(), enough);
+                lo = lo.min(least);
+                events.extend(event);
             }
         }
         if lo >= cap {
-            return CastMargin::of([cap; 2], None, 0.0, cap);
+            return within([cap; 2], None, 0.0, cap);
         }
         events.retain(|event| event.size[0] <= 2.0 * lo.max(self.smallest_size(frame)));
         events.sort_by(|a, b| a.size[0].total_cmp(&b.size[0]));
@@ -92,7 +93,7 @@ impl ExactCast<'_> {
         let ids: Vec<_> = nearest.iter().map(|one| one.face.id).collect();
         let differs = |by: [f64; 2]| self.first_moved(frame.ray, sides, by) != ids;
         let least = 2.0 * self.smallest_size(frame);
-        CastMargin::of([lo, hi], self.face_witness(frame, &events, lo, cap, differs), least, cap)
+        within([lo, hi], self.face_witness(frame, &events, lo, cap, differs), least, cap)
     }
 
     /// A size of displacement below which f64 numbers can hardly tell one ray from another: 2^-52 of the largest
@@ -242,15 +243,18 @@ impl SeenFace<'_> {
         conditions
     }
 
-    /// The entry of this face among the nearest, if it happens within `enough`.
-    fn event(&self, frame: &Frame<'_>, nearest: Option<&Self>, enough: f64) -> Option<Event> {
-        let fast = self.conditions(&frame.fast, nearest);
-        if in_units(least_size(&fast)?, frame)[0] >= enough {
-            return None;
+    /// The least displacement at which this face may be among the nearest, and its entry, if it happens within `enough`.
+    fn event(&self, frame: &Frame<'_>, nearest: Option<&Self>, enough: f64) -> (f64, Option<Event>) {
+        let never = (f64::INFINITY, None);
+        let Some(size) = least_size(&self.conditions(&frame.fast, nearest)) else { return never };
+        let least = in_units(size, frame)[0];
+        if least >= enough {
+            return (least, None);
         }
         let exact = self.conditions(frame.exact(), nearest);
-        let size = in_units(least_size(&exact)?, frame);
-        let conditions = exact.iter().map(|condition| rounded_exact(condition, frame)).collect();
-        (size[0] < enough).then_some(Event { size, kind: EventKind::Enters(conditions) })
+        let Some(size) = least_size(&exact) else { return never };
+        let size = in_units(size, frame);
+        let conditions = || exact.iter().map(|condition| rounded_exact(condition, frame)).collect();
+        (size[0], (size[0] < enough).then(|| Event { size, kind: EventKind::Enters(conditions()) }))
     }
 }

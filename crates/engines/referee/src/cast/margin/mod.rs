@@ -36,51 +36,26 @@ mod surface;
 use raypencil_scene::{CastRay, Reading, Sides};
 
 use super::ExactCast;
+use crate::displacement::Displacement;
+use crate::margin::{Margin, Margins};
 pub(super) use faces::onto_face;
 pub(super) use frame::Frame;
 pub(super) use seams::Seams;
 
-/// The least size of a displacement that changes an answer lies in `lo..=hi`, in the mesh's unit.
-///
-/// It is capped at the diagonal of the mesh's bounding box. Where both are equal to the cap, no displacement up to it
-/// changes the answer.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CastMargin {
-    /// Proven: no smaller displacement changes the answer.
-    pub lo: f64,
-    /// Some displacements of this size, or larger by as little as is wanted, change it.
-    pub hi: f64,
-    /// A displacement along [`CastRay::across`] after which the answer is another; `None` if the margin is capped, or if
-    /// the places where it differs are too narrow for two `f64` numbers.
-    pub witness: Option<[f64; 2]>,
+/// The margin of an answer that changes if either of two does.
+fn of_either(one: Margin, other: Margin) -> Margin {
+    let witness = if other.hi < one.hi { other.witness } else { one.witness };
+    Margin { lo: one.lo.min(other.lo), hi: one.hi.min(other.hi), witness }
 }
 
-/// The margins of a ray. Of a ray with [`CastRay::t_blind`] a change from too near to measured, or back, counts in both.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CastMargins {
-    /// Of the set of nearest faces: any change of it counts, also from one face to the next of a plane.
-    pub face: CastMargin,
-    /// Of the surface: the nearest t jumps, or a hit becomes a miss, or a miss a hit.
-    pub surface: CastMargin,
-}
-
-impl CastMargin {
-    /// The margin of an answer that changes if either of two does.
-    fn of_either(self, other: Self) -> Self {
-        let witness = if other.hi < self.hi { other.witness } else { self.witness };
-        Self { lo: self.lo.min(other.lo), hi: self.hi.min(other.hi), witness }
+/// From a proven interval of the least size. A witness counts if it is as small but for a hundredth, or for `least`, a size
+/// below which `f64` numbers hardly tell rays apart.
+fn within([lo, hi]: [f64; 2], witness: Option<[f64; 2]>, least: f64, cap: f64) -> Margin {
+    if lo >= cap {
+        return Margin { lo: cap, hi: cap, witness: None };
     }
-
-    /// From a proven interval of the least size. A witness counts if it is as small but for a hundredth, or for `least`,
-    /// a size below which `f64` numbers hardly tell rays apart.
-    fn of([lo, hi]: [f64; 2], witness: Option<[f64; 2]>, least: f64, cap: f64) -> Self {
-        if lo >= cap {
-            return Self { lo: cap, hi: cap, witness: None };
-        }
-        let size = |by: &[f64; 2]| by[0].abs().max(by[1].abs());
-        let witness = witness.filter(|by| size(by) <= (hi * 1.01).max(hi + least));
-        Self { lo, hi: witness.as_ref().map_or(hi, size).max(hi).min(cap), witness }
-    }
+    let witness = witness.map(Displacement::from).filter(|by| by.max_norm() <= (hi * 1.01).max(hi + least));
+    Margin { lo, hi: witness.as_ref().map_or(hi, Displacement::max_norm).max(hi).min(cap), witness }
 }
 
 impl ExactCast<'_> {
@@ -103,7 +78,7 @@ impl ExactCast<'_> {
     /// assert!(margins.surface.lo <= 0.25 && 0.25 <= margins.surface.hi && margins.surface.hi < 0.251);
     /// # Ok::<(), raypencil_scene::SceneError>(())
     /// ```
-    pub fn margins(&self, ray: &CastRay, sides: Sides) -> CastMargins {
+    pub fn margins(&self, ray: &CastRay, sides: Sides) -> Margins {
         let whole = self.margins_between_ends(ray, sides);
         if ray.t_blind <= ray.t_min {
             return whole;
@@ -114,16 +89,16 @@ impl ExactCast<'_> {
             Reading::TooNear => CastRay { t_max: ray.t_blind, ..*ray },
         };
         let cut = self.margins_between_ends(&on_its_side, sides);
-        CastMargins { face: whole.face.of_either(cut.face), surface: whole.surface.of_either(cut.surface) }
+        Margins { face: of_either(whole.face, cut.face), surface: of_either(whole.surface, cut.surface) }
     }
 
     /// The margins of the nearest hit between the ray's ends, wherever it is.
-    fn margins_between_ends(&self, ray: &CastRay, sides: Sides) -> CastMargins {
+    fn margins_between_ends(&self, ray: &CastRay, sides: Sides) -> Margins {
         let frame = Frame::new(ray);
         let nearest = self.nearest(ray, sides);
         let face = self.face_margin(&frame, &nearest, sides);
         // Where nothing is hit, what changes the faces changes the surface.
         let surface = if nearest.is_empty() { face } else { self.surface_margin(&frame, face.lo, sides) };
-        CastMargins { face, surface }
+        Margins { face, surface }
     }
 }

@@ -279,8 +279,9 @@ pub(super) fn cover<T: AtPlace>(
                 return None;
             }
             for condition in &ends_here {
-                // A condition that vanishes along the segment and does not grow to the right ends the face there.
-                if segment.to_the_right(condition).sign()? != Ordering::Greater {
+                // A condition that vanishes along the segment and falls to the right ends the face there. One that does not
+                // change is 0 everywhere, as for a face that lies in an end of the ray: it holds on both sides.
+                if segment.to_the_right(condition).sign()? == Ordering::Less {
                     return Some(Cover::None);
                 }
             }

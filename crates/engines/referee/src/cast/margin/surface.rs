@@ -38,8 +38,9 @@ use super::frame::{Frame, FrameNumbers, least_size};
 use super::hidden::{Hidden, WalkedFace};
 use super::nearby::Nearby;
 use super::segment::{Border, Cover, Piece, Place, Segment, corner_segment, cover, covered_up_to, met_at};
-use super::{CastMargin, ExactCast};
+use super::{ExactCast, within};
 use crate::bvh::RayBundle;
+use crate::margin::Margin;
 use crate::number::{Dyadic, Number};
 
 /// What waits to be looked at, nearest first.
@@ -79,7 +80,7 @@ const PLACE_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
 impl ExactCast<'_> {
     /// The margin of the surface of a ray that hits. No jump is nearer than `from`, the margin of the faces.
-    pub(super) fn surface_margin(&self, frame: &Frame<'_>, from: f64, sides: Sides) -> CastMargin {
+    pub(super) fn surface_margin(&self, frame: &Frame<'_>, from: f64, sides: Sides) -> Margin {
         let cap = self.diagonal;
         let query = QueryRay::new(frame.ray);
         let seams = self.seams();
@@ -90,7 +91,7 @@ impl ExactCast<'_> {
         loop {
             let size = nearby.size().min(tasks.size());
             if size >= cap {
-                return CastMargin::of([cap; 2], None, 0.0, cap);
+                return within([cap; 2], None, 0.0, cap);
             }
             if nearby.size() <= tasks.size() {
                 let faces = nearby.open(frame, |node, span| {
@@ -324,7 +325,7 @@ impl ExactCast<'_> {
         }
     }
 
-    fn jump(&self, frame: &Frame<'_>, piece: &Piece, cap: f64) -> CastMargin {
+    fn jump(&self, frame: &Frame<'_>, piece: &Piece, cap: f64) -> Margin {
         let segment = &piece.segment;
         let bounds = in_units(segment.size(&piece.near), frame);
         let scale = frame.fast.scale.middle();
@@ -336,7 +337,7 @@ impl ExactCast<'_> {
         let along = if length > 0.0 { [(to_a - a) / length, (to_b - b) / length] } else { [0.0; 2] };
         let right = segment.right();
         let witness = [0, 1].map(|k: usize| [a, b][k] + along[k] * step + right[k] * step / 16.0);
-        CastMargin::of(bounds, Some(witness), 2.0 * self.smallest_size(frame), cap)
+        within(bounds, Some(witness), 2.0 * self.smallest_size(frame), cap)
     }
 }
 
