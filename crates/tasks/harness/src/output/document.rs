@@ -1,5 +1,7 @@
 //! A validation as the document that every report prints.
 
+use std::path::Path;
+
 use raypencil_judge::{Class, SensorResult, name_of};
 use raypencil_report::{
     Block, Count, DefectGroup, DefectLine, Document, Outcome, Room, count, counted, list,
@@ -12,9 +14,9 @@ use crate::output::explorer::explorer;
 use crate::output::junit::suites;
 use crate::output::pictures::{Pictures, pictures};
 use crate::output::reading::HOW_TO_READ;
-use crate::output::screen::{Extent, ScreenBlocks, screen_blocks};
+use crate::output::screen::{Extent, MAX_COLUMNS, ScreenBlocks, screen_blocks};
 use crate::output::summary::{FORMAT, summary_keys};
-use crate::output::table::{causes, quantities, sensor_by_sensor, sensors, title};
+use crate::output::table::{causes, quantities, sensor_by_sensor, sensors, times, title};
 use crate::output::verdict::{CAVEAT, Verdict, explanation, headline};
 use crate::validation::{Pair, Validation};
 
@@ -36,13 +38,49 @@ impl Validation {
     }
 }
 
+/// The validation on one terminal screen. `folder` is the folder that [`crate::write_validation`] wrote.
+///
+/// ```
+/// # use std::sync::Arc;
+/// # use glam::DVec3;
+/// use raypencil_harness::{contender, one_screen, validate};
+/// # use raypencil_judge::JudgeShare;
+/// # use raypencil_scene::{Atmosphere, FluxModel, Scene, Silent, rig};
+/// # use raypencil_scene_io::Subject;
+///
+/// # let mesh = raypencil_terrain::builtin("pyramids", 0.25).expect("a built-in name").into_mesh()?;
+/// # let (camera, beams) = rig::default_rig(64, DVec3::ZERO, 0.0);
+/// # let air = Atmosphere { attenuation: 0.0 };
+/// # let scene = Scene::new(Arc::new(mesh), camera, beams, air, FluxModel::Radiometric)?;
+/// # let subject = Subject {
+/// #     scene,
+/// #     name: "small".into(),
+/// #     arguments: "small.toml".into(),
+/// #     sha256: "0".repeat(64),
+/// #     vehicle: None,
+/// #     file_facts: Default::default(),
+/// # };
+/// // One renderer alone is no comparison: the screen says so, and it is no pass.
+/// let alone = validate(subject, &[contender("tracer").expect("a name")], JudgeShare::Sample, &Silent);
+/// let screen = one_screen(&alone, None);
+/// assert!(screen.contains("Nothing was compared.") && !alone.passes());
+/// // It is one screen of a terminal.
+/// assert!(screen.lines().count() <= 40 && screen.lines().all(|line| line.len() <= 80));
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
+pub fn one_screen(validation: &Validation, folder: Option<&Path>) -> String {
+    let extent = Extent::Terminal(folder);
+    document(validation, extent, Pictures::default(), String::new()).screen_of_width(MAX_COLUMNS)
+}
+
+/// The same text for a file or another program: no line and no list is cut, whatever its length.
+pub fn whole_screen(validation: &Validation, folder: Option<&Path>) -> String {
+    let extent = folder.map_or(Extent::Whole, Extent::WholeOf);
+    document(validation, extent, Pictures::default(), String::new()).screen()
+}
+
 /// The document whose screen has that extent.
-pub(super) fn document(
-    validation: &Validation,
-    extent: Extent<'_>,
-    pictures: Pictures,
-    explorer: String,
-) -> Document {
+fn document(validation: &Validation, extent: Extent<'_>, pictures: Pictures, explorer: String) -> Document {
     let Validation { subject, rendered, pairs, stages, .. } = validation;
     let verdict = Verdict::of(validation);
     let names: Vec<&str> = rendered.iter().map(|rendered| rendered.name.as_str()).collect();
@@ -74,7 +112,7 @@ pub(super) fn document(
     blocks.push(wide("Sets of rays", ray_sets.collect()));
     blocks.push(drawn("Sets of rays in pictures", pictures.ray_sets));
     blocks.push(drawn("Light", pictures.light));
-    blocks.push(Block::Table { title: "Stage times", grid: crate::output::table::times(stages) });
+    blocks.push(Block::Table { title: "Stage times", grid: times(stages) });
     blocks.push(page("How to read this page", HOW_TO_READ.iter().map(ToString::to_string).collect()));
 
     // A screen has room for the reasons of a verdict that is none.

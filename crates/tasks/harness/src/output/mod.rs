@@ -2,7 +2,7 @@
 //! `docs/guide/report.md` describes both.
 
 mod candidates;
-mod document;
+pub(crate) mod document;
 mod explorer;
 pub(crate) mod folder;
 pub(crate) mod formats;
@@ -12,7 +12,7 @@ mod panel;
 mod pictures;
 mod plots;
 mod reading;
-pub(crate) mod screen;
+mod screen;
 mod summary;
 mod table;
 mod verdict;

@@ -10,14 +10,12 @@ use raypencil_scene_io::{probe_command, scene_sha256};
 use raypencil_survey::Whereabouts;
 
 use crate::output::candidates;
-use crate::output::document::document;
-use crate::output::pictures::Pictures;
 use crate::output::table::{hits, quantities_of_screen, short, worst};
 use crate::output::verdict::{Verdict, defects, explanation, rays};
 use crate::validation::Validation;
 
 /// Maximum columns of a line. Only paths and commands, which are for copying, may be longer.
-const MAX_COLUMNS: usize = 80;
+pub(super) const MAX_COLUMNS: usize = 80;
 
 /// Maximum lines of sensors.
 const MAX_SENSORS: usize = 5;
@@ -44,47 +42,6 @@ const MAX_CANDIDATE_DEFECTS: usize = 2;
 
 /// Maximum lines of a described defect.
 const MAX_DEFECT_LINES: usize = 2;
-
-/// The validation on one terminal screen. `folder` is the folder that [`crate::write_validation`] wrote.
-///
-/// ```
-/// # use std::sync::Arc;
-/// # use glam::DVec3;
-/// use raypencil_harness::{contender, one_screen, validate};
-/// # use raypencil_judge::JudgeShare;
-/// # use raypencil_scene::{Atmosphere, FluxModel, Scene, Silent, rig};
-/// # use raypencil_scene_io::Subject;
-///
-/// # let mesh = raypencil_terrain::builtin("pyramids", 0.25).expect("a built-in name").into_mesh()?;
-/// # let (camera, beams) = rig::default_rig(64, DVec3::ZERO, 0.0);
-/// # let air = Atmosphere { attenuation: 0.0 };
-/// # let scene = Scene::new(Arc::new(mesh), camera, beams, air, FluxModel::Radiometric)?;
-/// # let subject = Subject {
-/// #     scene,
-/// #     name: "small".into(),
-/// #     arguments: "small.toml".into(),
-/// #     sha256: "0".repeat(64),
-/// #     vehicle: None,
-/// #     file_facts: Default::default(),
-/// # };
-/// // One renderer alone is no comparison: the screen says so, and it is no pass.
-/// let alone = validate(subject, &[contender("tracer").expect("a name")], JudgeShare::Sample, &Silent);
-/// let screen = one_screen(&alone, None);
-/// assert!(screen.contains("Nothing was compared.") && !alone.passes());
-/// // It is one screen of a terminal.
-/// assert!(screen.lines().count() <= 40 && screen.lines().all(|line| line.len() <= 80));
-/// # Ok::<(), raypencil_scene::SceneError>(())
-/// ```
-pub fn one_screen(validation: &Validation, folder: Option<&Path>) -> String {
-    let extent = Extent::Terminal(folder);
-    document(validation, extent, Pictures::default(), String::new()).screen_of_width(MAX_COLUMNS)
-}
-
-/// The same text for a file or another program: no line and no list is cut, whatever its length.
-pub fn whole_screen(validation: &Validation, folder: Option<&Path>) -> String {
-    let extent = folder.map_or(Extent::Whole, Extent::WholeOf);
-    document(validation, extent, Pictures::default(), String::new()).screen()
-}
 
 /// How much a screen shows, and the folder that it names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
