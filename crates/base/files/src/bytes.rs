@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
+use crate::limits::part_of_memory;
+
 /// The bytes of a regular file of at most `max_bytes` bytes.
 ///
 /// # Errors
@@ -14,6 +16,14 @@ pub fn read_file(path: &Path, max_bytes: u64) -> io::Result<Vec<u8>> {
     let metadata = std::fs::metadata(path)?;
     if !metadata.is_file() {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "not a regular file"));
+    }
+    let memory = part_of_memory(1);
+    if metadata.len() > memory {
+        let words = format!(
+            "{} bytes; expected at most {memory}, the memory that there is for it (--max-memory)",
+            metadata.len()
+        );
+        return Err(io::Error::new(io::ErrorKind::OutOfMemory, words));
     }
     let too_large = || io::Error::new(io::ErrorKind::InvalidData, format!("larger than {max_bytes} bytes"));
     if metadata.len() > max_bytes {

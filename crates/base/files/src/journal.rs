@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::NamedTempFile;
@@ -16,7 +17,12 @@ use crate::sha256::file_sha256_hex;
 /// The output folders that runs of this process are writing into.
 static OPEN: Mutex<Vec<Open>> = Mutex::new(Vec::new());
 
+/// Number of the next one.
+static NEXT: AtomicU64 = AtomicU64::new(0);
+
 struct Open {
+    /// Several may note the same folder.
+    number: u64,
     /// Canonical, so that one folder has one name.
     folder: PathBuf,
     /// Files below it, with their digests.
@@ -24,24 +30,40 @@ struct Open {
 }
 
 /// The files that this process writes below a folder, as long as this value lives.
+///
+/// ```
+/// use raypencil_files::{Journal, write_atomically};
+///
+/// let folder = tempfile::tempdir()?;
+/// let journal = Journal::begin(folder.path())?;
+/// write_atomically(folder.path().join("mine"), |file| file.write_all(b"abc"))?;
+/// std::fs::write(folder.path().join("somebody's"), "abc")?;
+/// let abc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+/// assert_eq!(journal.written().into_iter().collect::<Vec<_>>(), [("mine".into(), abc.into())]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
-pub(crate) struct Journal {
-    folder: PathBuf,
+pub struct Journal {
+    number: u64,
 }
 
 impl Journal {
-    /// Begins to note what is written below a folder, which exists and which nobody else in this process writes into.
-    pub(crate) fn begin(folder: &Path) -> io::Result<Self> {
+    /// Begins to note what is written below a folder.
+    ///
+    /// # Errors
+    /// A folder that does not exist.
+    pub fn begin(folder: &Path) -> io::Result<Self> {
         let folder = folder.canonicalize()?;
-        open().push(Open { folder: folder.clone(), written: BTreeMap::new() });
-        Ok(Self { folder })
+        let number = NEXT.fetch_add(1, Ordering::Relaxed);
+        open().push(Open { number, folder, written: BTreeMap::new() });
+        Ok(Self { number })
     }
 
     /// The files that were written so far, by their paths in the folder, with their digests.
-    pub(crate) fn written(&self) -> BTreeMap<PathBuf, String> {
+    pub fn written(&self) -> BTreeMap<PathBuf, String> {
         let open = open();
         open.iter()
-            .find(|open| open.folder == self.folder)
+            .find(|open| open.number == self.number)
             .map(|open| open.written.clone())
             .unwrap_or_default()
     }
@@ -49,7 +71,7 @@ impl Journal {
 
 impl Drop for Journal {
     fn drop(&mut self) {
-        open().retain(|open| open.folder != self.folder);
+        open().retain(|open| open.number != self.number);
     }
 }
 

@@ -12,6 +12,7 @@
 //! limits, bytes                  how much a file may ask for, and reading one up to a limit
 //! quoted                         words for a shell
 //! sha256, journal                digests, and what this process has written where
+//! program                        digests of programs
 //! atomic, folder                 writing a file whole, output folders
 //! output_folder                  one run at a time in a folder, and nothing of an earlier one left in it
 //! harmless                       texts of untrusted files, for terminals and Markdown
@@ -62,6 +63,7 @@ mod npz;
 mod output_folder;
 mod pfm;
 mod png;
+mod program;
 mod quoted;
 mod rays;
 mod sha256;
@@ -83,10 +85,10 @@ pub use exr::{
 pub use folder::{FolderError, begin_output_folder, create_folder, write_texts};
 pub use growing_file::{GrowingFile, NpyRows};
 pub use harmless::{harmless, harmless_line, harmless_source, markdown_text};
-pub use journal::put_in_place;
+pub use journal::{Journal, put_in_place};
 pub use limits::{
     Limits, MAX_EXPANSION, MAX_EXR_ATTRIBUTES, MAX_EXR_CHANNELS, MAX_EXR_HEADER_BYTES, MAX_EXR_PARTS,
-    MAX_INFLATED_BYTES,
+    MAX_INFLATED_BYTES, limit_memory, part_of_memory,
 };
 pub use named_array::{ArrayData, NamedArray, write_npz, write_zarr};
 pub use npy::{
@@ -94,9 +96,10 @@ pub use npy::{
     write_npy_numbers,
 };
 pub use npz::{npz_from_bytes, read_npz};
-pub use output_folder::{MIN_ABANDONED_AGE, OutputFolder, remove_abandoned};
+pub use output_folder::{MIN_ABANDONED_AGE, OutputFolder, remove_abandoned, subject_of};
 pub use pfm::{pfm_from_bytes, read_pfm, write_pfm};
 pub use png::{png_from_bytes, read_picture_png};
+pub use program::{command_files, program_sha256};
 pub use quoted::quoted;
 pub use rays::{RayArray, ray_rows, rays_from_bytes, read_rays};
 pub use sha256::{Sha256Digest, combined_sha256_hex, file_sha256, file_sha256_hex, hex_digits, sha256};

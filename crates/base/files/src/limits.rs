@@ -1,5 +1,7 @@
 //! Limits that a reader holds a file's claims against before it asks for memory.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 /// Maximum number of attributes of an OpenEXR file, in all its parts. Parts have a few dozen.
 pub const MAX_EXR_ATTRIBUTES: usize = 1024;
 
@@ -20,6 +22,26 @@ pub const MAX_INFLATED_BYTES: u64 = 1 << 29;
 /// compressed to a thousandth; maps of a ground are compressed to a half or a quarter.
 pub const MAX_EXPANSION: u64 = 64;
 
+/// Memory that this process may take, bytes; 0: nobody has said.
+static MEMORY: AtomicU64 = AtomicU64::new(0);
+
+/// Says how much memory this process may take for what files claim, bytes. Readers ask before they allocate.
+pub fn limit_memory(bytes: u64) {
+    MEMORY.store(bytes.max(1), Ordering::Relaxed);
+}
+
+/// A part of the memory that this process may take, bytes; all that there can be if nobody has said.
+pub fn part_of_memory(divisor: u64) -> u64 {
+    match MEMORY.load(Ordering::Relaxed) {
+        0 => u64::MAX,
+        bytes => bytes / divisor,
+    }
+}
+
+/// Memory of a recording by the bytes that its channels have in files: they become doubles, two recordings are compared, and
+/// each takes as much again. Tuned.
+const MEMORY_OF_A_BYTE: u64 = 6;
+
 /// How much a file may ask for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
@@ -32,9 +54,10 @@ pub struct Limits {
 }
 
 impl Default for Limits {
-    /// 2^26 cells, as many as a sensor may have; 4 GiB; any size.
+    /// 2^26 cells, as many as a sensor may have; 4 GiB, or less where the memory is less; any size.
     fn default() -> Self {
-        Self { cells: 1 << 26, bytes: 1 << 32, size: None }
+        let bytes = part_of_memory(MEMORY_OF_A_BYTE).min(1 << 32);
+        Self { cells: 1 << 26, bytes, size: None }
     }
 }
 

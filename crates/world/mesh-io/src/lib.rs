@@ -71,7 +71,7 @@ pub use gltf::{
     DEFAULT_REFLECTIVITY, MAX_BUFFER_FILES_BYTES, Vertices, glb_bytes, load_mesh, mesh_from_bytes, write_glb,
     write_terrain_glb,
 };
-pub use terrain::{TerrainFile, read_dem_terrain, read_terrain, terrain_from_bytes};
+pub use terrain::{TerrainFile, read_dem_terrain, read_terrain, terrain_files, terrain_from_bytes};
 pub use triangles::{
     BentPolygons, CrossingPolygons, PolygonFacts, PolygonPlace, TriangleFile, load_triangles, read_triangles,
     triangles_from_bytes,

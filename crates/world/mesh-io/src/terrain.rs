@@ -1,9 +1,9 @@
 //! A file of any format to terrain: in the global frame, with a scene origin.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use raypencil_files::{Fault, FileError, Sha256Digest, file_sha256};
+use raypencil_files::{Fault, FileError, Sha256Digest, file_sha256, sha256};
 use raypencil_scene::{Material, Mesh};
 
 use crate::dem::{DemOptions, read_dem_with};
@@ -49,6 +49,20 @@ pub struct TerrainFile {
     pub digests: Vec<Sha256Digest>,
     /// What was found out about the file beside its faces.
     pub facts: FileFacts,
+}
+
+/// The files that [`read_terrain`] reads, each with its digest: the file itself, and the buffers in files that a glTF file
+/// names. Its faces are not read. A buffer that cannot be read is left out: the terrain says why if it needs it.
+///
+/// # Errors
+/// A file that cannot be read; a glTF file that is none.
+pub fn terrain_files(path: &Path) -> Result<Vec<(PathBuf, Sha256Digest)>, FileError> {
+    let bytes = read_bytes(path)?;
+    let mut files = vec![(path.to_path_buf(), sha256(&bytes))];
+    if format(&bytes, path).is_ok_and(|format| format == Format::Gltf) {
+        files.extend(gltf::buffer_files(&bytes, path)?);
+    }
+    Ok(files)
 }
 
 /// Terrain of an elevation model, or of its part inside a window, with the digest of the whole file.

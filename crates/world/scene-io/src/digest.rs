@@ -25,6 +25,9 @@ pub fn scene_sha256(scene: &Scene) -> String {
     hex_digits(&resolved(scene))
 }
 
+/// A file that a scene names, as it is named there, and its digest.
+pub(crate) type NamedDigest = (String, Sha256Digest);
+
 /// [`scene_sha256`] as bytes.
 pub(crate) fn resolved(scene: &Scene) -> Sha256Digest {
     let mut hash = Numbers(Sha256::new());

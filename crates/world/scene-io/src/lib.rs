@@ -13,7 +13,8 @@
 //!    `parse/scene` fill it in;
 //! 5. `resolve`: a plan and a mesh become a scene; `resolved`: files that hold the scene's own numbers;
 //! 6. `digest`: SHA-256 of a scene's numbers;
-//! 7. `settings`: keys given outside of the file; `file_warnings`, `scene_source`, `overrides`, `ground`, `load`: from a name or path to a [`LoadedScene`].
+//! 7. `settings`: keys given outside of the file; `file_warnings`, `scene_source`, `overrides`, `ground`, `load`: from a name or path to a [`LoadedScene`];
+//! 8. `inputs`: the files whose bytes decide a scene.
 //!
 //! `parse/rays` reads tables `[[rays]]` into named ray sets, with poses from files (`trajectory`), `ray_sets` a file that has nothing else, `ray_scene` a scene of
 //! them without a camera.
@@ -44,6 +45,7 @@ mod drive;
 mod file_warnings;
 mod ground;
 mod grounds;
+mod inputs;
 mod load;
 mod overrides;
 mod parse;
@@ -75,6 +77,7 @@ pub use digest::scene_sha256;
 pub use drive::setup::{DriveSetup, WaypointFrame, default_threshold};
 pub use file_warnings::file_warnings;
 pub use grounds::Grounds;
+pub use inputs::{InputFile, SceneInputs};
 pub use load::{LoadedScene, MAX_TOML_BYTES, check_settings, load, load_sharing, load_text, load_text_with};
 pub use overrides::Overrides;
 pub use ray_scene::{RayScene, load_ray_scene};

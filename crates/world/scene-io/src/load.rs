@@ -180,7 +180,7 @@ pub fn check_settings(source: &str, settings: &[Setting]) -> Result<(), SceneIoE
 }
 
 /// The text of a scene, which a ground alone gets for the purpose, and the path that messages call it by.
-fn text_of(source: &SceneSource) -> Result<(PathBuf, String), SceneIoError> {
+pub(crate) fn text_of(source: &SceneSource) -> Result<(PathBuf, String), SceneIoError> {
     let beside = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     Ok(match source {
         SceneSource::Toml(path) => (path.clone(), read_toml(path)?),
@@ -275,9 +275,7 @@ fn load_rig(
     grounds: Option<&Grounds>,
 ) -> Result<LoadedScene, SceneIoError> {
     let mut plan = parse(file)?;
-    parts.extend(plan.camera_digest);
-    parts.append(&mut plan.kernel_digests);
-    parts.append(&mut plan.ray_digests);
+    parts.extend(plan.named_files().map(|(_, digest)| *digest));
     let make = || -> Result<Ground, SceneIoError> {
         match read_ground(file, &plan)? {
             Some(TerrainFile { mesh, digests, facts }) => {

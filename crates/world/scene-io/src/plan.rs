@@ -4,12 +4,12 @@ use glam::DVec3;
 use std::ops::Range;
 use std::path::PathBuf;
 
-use raypencil_files::Sha256Digest;
 use raypencil_mesh_io::{DemOptions, FileFrame};
 use raypencil_scene::rig::{self, DEFAULT_BEAM_MOUNTS, DEFAULT_CAMERA_MOUNT, DefaultMount};
 use raypencil_scene::{Beam, Camera, FluxModel, NamedRaySet};
 use raypencil_terrain::MarsGround;
 
+use crate::digest::NamedDigest;
 use crate::drive::setup::DriveSetup;
 
 /// All numbers of a scene except for its mesh.
@@ -25,16 +25,23 @@ pub(crate) struct ScenePlan {
     pub flux_model: FluxModel,
     pub drive: Option<DriveSetup>,
     /// Digest of the camera's calibration, if the file names one.
-    pub camera_digest: Option<Sha256Digest>,
+    pub camera_digest: Option<NamedDigest>,
     /// Digests of the files of the drive's kernels, in their order.
-    pub kernel_digests: Vec<Sha256Digest>,
+    pub kernel_digests: Vec<NamedDigest>,
     /// Sets of rays, in the vehicle frame.
     pub ray_sets: Vec<NamedRaySet>,
     /// Digests of the files that they name, in their order.
-    pub ray_digests: Vec<Sha256Digest>,
+    pub ray_digests: Vec<NamedDigest>,
     /// Places of the vehicle's position and of the terrain in the file.
     pub position_span: Range<usize>,
     pub terrain_span: Range<usize>,
+}
+
+impl ScenePlan {
+    /// The files that were read for anything but the ground, in their order.
+    pub(crate) fn named_files(&self) -> impl Iterator<Item = &NamedDigest> {
+        self.camera_digest.iter().chain(&self.kernel_digests).chain(&self.ray_digests)
+    }
 }
 
 /// Placement of the vehicle in the global frame.

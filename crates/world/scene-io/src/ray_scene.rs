@@ -106,14 +106,9 @@ pub fn load_ray_scene(path: &Path, settings: &[Setting]) -> Result<RayScene, Sce
     };
     let sets = plan.ray_sets.iter().map(|set| set.placed(&vehicle));
     let sets: Vec<NamedRaySet> = sets.collect::<Result<_, _>>().map_err(unfit)?;
-    let own = vec![sha256(file.text.as_bytes())];
-    Ok(RayScene {
-        triangles,
-        sets,
-        terrain_digests,
-        file_facts,
-        sha256: combined_sha256_hex(&[own, plan.ray_digests].concat()),
-    })
+    let of_sets = plan.ray_digests.iter().map(|(_, digest)| *digest);
+    let parts: Vec<Sha256Digest> = std::iter::once(sha256(file.text.as_bytes())).chain(of_sets).collect();
+    Ok(RayScene { triangles, sets, terrain_digests, file_facts, sha256: combined_sha256_hex(&parts) })
 }
 
 /// The vehicle's pose in the global frame.

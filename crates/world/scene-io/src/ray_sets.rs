@@ -67,7 +67,10 @@ pub fn ray_sets_from_text(text: &str, file: &Path) -> Result<LoadedRaySets, Scen
     let own = sha256(text.as_bytes());
     let sha256 = match of_files.len() {
         0 => hex_digits(&own),
-        _ => combined_sha256_hex(&[vec![own], of_files].concat()),
+        _ => {
+            let of_files = of_files.into_iter().map(|(_, digest)| digest);
+            combined_sha256_hex(&std::iter::once(own).chain(of_files).collect::<Vec<_>>())
+        }
     };
     Ok(LoadedRaySets { sets, sha256 })
 }

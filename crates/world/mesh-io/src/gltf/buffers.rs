@@ -50,6 +50,22 @@ impl<'a> Buffers<'a> {
         })
     }
 
+    /// The files that the buffers name, as they are named, each once, with their digests. One that cannot be read is left out.
+    pub(super) fn files(mut self) -> Vec<(PathBuf, Sha256Digest)> {
+        let mut found: Vec<(PathBuf, Sha256Digest)> = Vec::new();
+        let root = self.root;
+        for (index, buffer) in root.buffers.iter().enumerate() {
+            let Some(uri) = buffer.uri.as_ref().filter(|uri| !uri.starts_with("data:")) else { continue };
+            let Ok(real) = self.external(index, uri) else { continue };
+            let name = self.folder.join(percent_decoded(uri).unwrap_or_default());
+            let digest = self.files.get(&real).map(|file| file.digest);
+            found.extend(
+                digest.filter(|_| found.iter().all(|(own, _)| *own != name)).map(|digest| (name, digest)),
+            );
+        }
+        found
+    }
+
     /// Bytes of a buffer view.
     ///
     /// # Errors

@@ -25,6 +25,6 @@ pub(crate) use assemble::WITHOUT_MATERIAL;
 pub(crate) use exact::exact_triangles;
 pub use limits::MAX_BUFFER_FILES_BYTES;
 pub(crate) use limits::MAX_FACES_OR_VERTICES;
-pub(crate) use read::terrain_from_bytes;
 pub use read::{DEFAULT_REFLECTIVITY, Vertices, load_mesh, mesh_from_bytes, read_mesh};
+pub(crate) use read::{buffer_files, terrain_from_bytes};
 pub use write::{glb_bytes, write_glb, write_terrain_glb};

@@ -1,6 +1,6 @@
 //! glTF and GLB to a mesh, with its scene origin.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use raypencil_files::{Fault, FileError, Sha256Digest, bytes, sha256};
@@ -72,6 +72,18 @@ pub(crate) fn terrain_from_bytes(
 ) -> Result<(Mesh, Vec<Sha256Digest>), FileError> {
     let (mesh, external) = parse(bytes, file, reflectivity, Vertices::Global, frame)?;
     Ok((mesh, std::iter::once(sha256(bytes)).chain(external).collect()))
+}
+
+/// The buffers in files of their own that a file names, each once, with their digests.
+///
+/// # Errors
+/// A file that is no glTF.
+pub(crate) fn buffer_files(bytes: &[u8], file: &Path) -> Result<Vec<(PathBuf, Sha256Digest)>, FileError> {
+    let in_file = |fault: Fault| FileError::Gltf(fault.in_file(file));
+    let container = container::split(bytes).map_err(in_file)?;
+    let root = json::root(container.json).map_err(in_file)?;
+    let folder = file.parent().unwrap_or(Path::new(""));
+    Ok(Buffers::new(&root, folder, container.bin).files())
 }
 
 /// Meaning of the vertices of a file.

@@ -4,9 +4,9 @@ use serde::Deserialize;
 use std::ops::RangeInclusive;
 use toml::Spanned;
 
-use raypencil_files::Sha256Digest;
 use raypencil_sensor::{Dust, ImageLength, ImageSensor, Psf};
 
+use crate::digest::NamedDigest;
 use crate::drive::setup::DriveSetup;
 use crate::parse::key::Key;
 use crate::parse::source::Source;
@@ -95,7 +95,7 @@ impl Source<'_> {
         &self,
         keys: &OpticsKeys,
         drive: &mut DriveSetup,
-    ) -> Result<Vec<Sha256Digest>, SceneIoError> {
+    ) -> Result<Vec<NamedDigest>, SceneIoError> {
         let mut kernel_digests = Vec::new();
         let name = "drive.optics.oversampling";
         self.integer(&keys.oversampling, name, &mut drive.optics.oversampling, 1..=64, "")?;
@@ -129,7 +129,7 @@ impl Source<'_> {
         keys: &Spanned<BlurKeys>,
         name: &str,
         drive: &DriveSetup,
-        kernel_digests: &mut Vec<Sha256Digest>,
+        kernel_digests: &mut Vec<NamedDigest>,
     ) -> Result<Psf, SceneIoError> {
         let BlurKeys { airy_rings, gaussian_px, gaussian_um, kernel } = keys.get_ref();
         match (airy_rings, gaussian_px, gaussian_um, kernel) {

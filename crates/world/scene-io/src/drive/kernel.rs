@@ -3,10 +3,11 @@
 use std::path::Path;
 use toml::Spanned;
 
-use raypencil_files::{Limits, Sha256Digest, bytes, npy_from_bytes, sha256};
+use raypencil_files::{Limits, bytes, npy_from_bytes, sha256};
 use raypencil_scene::SceneError;
 use raypencil_sensor::Kernel;
 
+use crate::digest::NamedDigest;
 use crate::parse::source::Source;
 use crate::scene_error::SceneIoError;
 
@@ -19,7 +20,7 @@ impl Source<'_> {
         &self,
         key: &Spanned<String>,
         name: &str,
-    ) -> Result<(Kernel, Sha256Digest), SceneIoError> {
+    ) -> Result<(Kernel, NamedDigest), SceneIoError> {
         let refuse = |message: String| self.error(key.span(), message);
         let file = self.file.parent().unwrap_or(Path::new("")).join(key.get_ref());
         if !file.is_file() {
@@ -45,6 +46,6 @@ impl Source<'_> {
             let SceneError { field, value, expected } = error;
             refuse(format!("`{name}`: {field} is {value}; expected {expected}"))
         })?;
-        Ok((kernel, sha256(&bytes)))
+        Ok((kernel, (key.get_ref().clone(), sha256(&bytes))))
     }
 }

@@ -5,13 +5,13 @@ use serde::Deserialize;
 use std::ops::RangeInclusive;
 use toml::Spanned;
 
-use raypencil_files::Sha256Digest;
 use raypencil_rover::{
     Detection, DrivePlan, ExposureMode, PointLookup, PositionFixes, RULE_NAMES, RadialGrid, Rig, ScanRule,
     StripeLocation, TraversabilityRules, VectorRules, Vehicle,
 };
 use raypencil_sensor::{MARS_SEMI_MAJOR_AXIS_AU, PRESET_NAMES, SOLAR_IRRADIANCE_810_NM, Sunlight};
 
+use crate::digest::NamedDigest;
 use crate::drive::camera::{ElectronicsKeys, OpticsKeys};
 use crate::drive::setup::{DriveSetup, WaypointFrame, default_threshold};
 use crate::parse::key::{Key, span};
@@ -122,7 +122,7 @@ impl Source<'_> {
         &self,
         keys: &DriveKeys,
         rig: Rig,
-    ) -> Result<(DriveSetup, Vec<Sha256Digest>), SceneIoError> {
+    ) -> Result<(DriveSetup, Vec<NamedDigest>), SceneIoError> {
         let mut frame = WaypointFrame::Vehicle;
         let frames = [("vehicle", WaypointFrame::Vehicle), ("global", WaypointFrame::Global)];
         self.choice(&keys.waypoints_frame, "drive.waypoints_frame", &mut frame, &frames)?;

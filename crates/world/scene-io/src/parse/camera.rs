@@ -9,6 +9,7 @@ use raypencil_files::{Sha256Digest, bytes, sha256};
 use raypencil_scene::{Camera, Filter};
 
 use crate::camera_info::{CameraInfo, MAX_CAMERA_INFO_BYTES, camera_info_from_text};
+use crate::digest::NamedDigest;
 use crate::parse::key::{Key, OneOrPair, span};
 use crate::parse::rig::{MAX_RANGE_M, from_micrometres, from_millimetres, from_nanometres};
 use crate::parse::source::Source;
@@ -87,7 +88,7 @@ impl Source<'_> {
         &self,
         keys: &CameraKeys,
         (mount, camera): &mut (Mount, Camera),
-    ) -> Result<Option<Sha256Digest>, SceneIoError> {
+    ) -> Result<Option<NamedDigest>, SceneIoError> {
         let turns = [&keys.pitch_down_deg, &keys.yaw_left_deg, &keys.roll_right_deg];
         self.mount("camera", &keys.position_m, turns, mount)?;
         let digest = self.image(keys, camera)?;
@@ -121,7 +122,7 @@ impl Source<'_> {
     }
 
     /// Size, pixels, focal length and principal point of the camera; the digest of the calibration if the keys name one.
-    fn image(&self, keys: &CameraKeys, camera: &mut Camera) -> Result<Option<Sha256Digest>, SceneIoError> {
+    fn image(&self, keys: &CameraKeys, camera: &mut Camera) -> Result<Option<NamedDigest>, SceneIoError> {
         self.one_description(keys)?;
         let calibration = match &keys.camera_info {
             Some(key) => Some(
@@ -196,7 +197,7 @@ impl Source<'_> {
         let CameraInfo { focal_length, principal_point, .. } = info;
         let intrinsics = Intrinsics { focal_length, principal_point: principal_point.map(Some) };
         self.intrinsics(&intrinsics, "camera.camera_info", key.span(), camera)?;
-        Ok(Some(digest))
+        Ok(Some((key.get_ref().clone(), digest)))
     }
 
     /// Refuses two descriptions of one image, of which one would be lost.

@@ -7,7 +7,7 @@ use raypencil_scene_io::{LoadedScene, Overrides, SceneIoError, SceneSource, load
 
 /// A folder with `dem.tif`, 41 x 31 posts 1 m apart whose pixels are areas: x from 100.5 to 140.5, y from 169.5 to
 /// 199.5, level but for a step of 2 m at x = 130.
-fn folder() -> tempfile::TempDir {
+pub(crate) fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let mut tiff = Tiff::plain()
         .tag(33550, Double(vec![1.0, 1.0, 0.0]))

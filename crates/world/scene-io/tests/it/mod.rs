@@ -4,6 +4,7 @@ mod bad_scenes;
 mod cameras;
 mod dem;
 mod drives;
+mod inputs;
 mod meshes;
 mod rays;
 mod resolved;

@@ -11,10 +11,11 @@ use serde::Deserialize;
 use std::collections::BTreeSet;
 use toml::Spanned;
 
-use raypencil_files::Sha256Digest;
+use raypencil_files::part_of_memory;
 use raypencil_scene::pattern::MAX_RAYS;
 use raypencil_scene::{NamedRaySet, SceneError, Sides};
 
+use crate::digest::NamedDigest;
 use crate::parse::key::Key;
 use crate::parse::rays::cone::ConeKeys;
 use crate::parse::rays::mount::{OnePose, TimedPoseKeys};
@@ -24,6 +25,9 @@ use crate::scene_error::SceneIoError;
 
 /// Maximum number of sets.
 const MAX_SETS: usize = 1000;
+
+/// Memory of a ray as it is made: where it starts, where it goes, its limits and its time, bytes.
+const BYTES_OF_RAY: u64 = 96;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -49,7 +53,7 @@ impl Source<'_> {
     pub(crate) fn ray_sets(
         &self,
         tables: &[Spanned<RaysKeys>],
-    ) -> Result<(Vec<NamedRaySet>, Vec<Sha256Digest>), SceneIoError> {
+    ) -> Result<(Vec<NamedRaySet>, Vec<NamedDigest>), SceneIoError> {
         if let Some(table) = tables.get(MAX_SETS) {
             let message = format!("there are {} sets of rays; expected at most {MAX_SETS}", tables.len());
             return Err(self.error(table.span(), message));
@@ -79,6 +83,15 @@ impl Source<'_> {
                     format!("`rays {index}` has {count} rays{with}; expected at most {MAX_RAYS} in all sets");
                 return Err(self.error(table.span(), message));
             }
+            let needed = before.saturating_add(count).saturating_mul(BYTES_OF_RAY);
+            let memory = part_of_memory(1);
+            if needed > memory {
+                let message = format!(
+                    "`rays {index}` has {count} rays, which take about {needed} bytes with those before them; expected at \
+                     most {memory}, the memory that there is (--max-memory)"
+                );
+                return Err(self.error(table.span(), message));
+            }
             before += count;
             sets.push(self.ray_set(index, table, pattern, &mut digests)?);
         }
@@ -104,7 +117,7 @@ impl Source<'_> {
         &self,
         index: usize,
         table: &Spanned<RaysKeys>,
-        digests: &mut Vec<Sha256Digest>,
+        digests: &mut Vec<NamedDigest>,
     ) -> Result<Pattern, SceneIoError> {
         let name = format!("rays {index}");
         let keys = table.get_ref();
@@ -117,7 +130,7 @@ impl Source<'_> {
         index: usize,
         table: &Spanned<RaysKeys>,
         pattern: Pattern,
-        digests: &mut Vec<Sha256Digest>,
+        digests: &mut Vec<NamedDigest>,
     ) -> Result<NamedRaySet, SceneIoError> {
         let keys = table.get_ref();
         let name = format!("rays {index}");

@@ -6,10 +6,11 @@ use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
 
-use raypencil_files::{Sha256Digest, sha256};
+use raypencil_files::sha256;
 use raypencil_scene::Pose;
 use raypencil_scene::pattern::{Mounting, TimedPose, TimedPoses};
 
+use crate::digest::NamedDigest;
 use crate::parse::key::{Key, span};
 use crate::parse::shared::{GLOBAL_M, TURN_DEG};
 use crate::parse::source::Source;
@@ -60,7 +61,7 @@ impl Source<'_> {
         name: &str,
         pose: &OnePose<'_>,
         (poses, file): (&Key<Vec<Spanned<TimedPoseKeys>>>, &Spanned<String>),
-        digests: &mut Vec<Sha256Digest>,
+        digests: &mut Vec<NamedDigest>,
     ) -> Result<Mounting, SceneIoError> {
         let beside = poses.as_ref().map(|poses| ("poses", poses.span())).or_else(|| pose.first_given());
         if let Some((key, place)) = beside {
@@ -76,7 +77,7 @@ impl Source<'_> {
             return Err(self.error(file.span(), message));
         }
         let (timed, bytes) = read_trajectory(&path)?;
-        digests.push(sha256(&bytes));
+        digests.push((file.get_ref().clone(), sha256(&bytes)));
         let refused = |error| self.refused(file.span(), &error);
         Ok(Mounting::Moving(TimedPoses::new(timed, &format!("{name}.poses_file")).map_err(refused)?))
     }

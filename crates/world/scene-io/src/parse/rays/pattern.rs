@@ -5,10 +5,11 @@ use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
 
-use raypencil_files::{FileError, Limits, RayArray, Sha256Digest, bytes, rays_from_bytes, sha256};
+use raypencil_files::{FileError, Limits, RayArray, bytes, rays_from_bytes, sha256};
 use raypencil_scene::SceneError;
 use raypencil_scene::pattern::{Cone, Grid, PatternRays, Spinning};
 
+use crate::digest::NamedDigest;
 use crate::parse::key::Key;
 use crate::parse::rays::cone::{ConeKeys, OfKeys};
 use crate::parse::rays::grid::GridKeys;
@@ -67,7 +68,7 @@ impl Source<'_> {
         (name, place): (&str, Range<usize>),
         keys: PatternKeys<'_>,
         cone: Option<&Key<ConeKeys>>,
-        digests: &mut Vec<Sha256Digest>,
+        digests: &mut Vec<NamedDigest>,
     ) -> Result<Pattern, SceneIoError> {
         let is_given = [
             ("file", keys.file.is_some()),
@@ -111,7 +112,7 @@ impl Source<'_> {
         &self,
         name: &str,
         key: &Spanned<String>,
-        digests: &mut Vec<Sha256Digest>,
+        digests: &mut Vec<NamedDigest>,
     ) -> Result<RayArray, SceneIoError> {
         let file = self.file.parent().unwrap_or(Path::new("")).join(key.get_ref());
         if !file.is_file() {
@@ -124,7 +125,7 @@ impl Source<'_> {
         // The header of an NPY file comes on top of its numbers, at most 2^16 bytes.
         let most = Limits::default().bytes + (1 << 16);
         let bytes = bytes::read_file(&file, most).map_err(|error| FileError::io(&file, "read", error))?;
-        digests.push(sha256(&bytes));
+        digests.push((key.get_ref().clone(), sha256(&bytes)));
         Ok(rays_from_bytes(&bytes, &file)?)
     }
 }

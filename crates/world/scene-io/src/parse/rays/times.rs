@@ -3,8 +3,9 @@
 use std::path::Path;
 use toml::Spanned;
 
-use raypencil_files::{FileError, Limits, Sha256Digest, bytes, npy_numbers_from_bytes, sha256};
+use raypencil_files::{FileError, Limits, bytes, npy_numbers_from_bytes, sha256};
 
+use crate::digest::NamedDigest;
 use crate::parse::key::Key;
 use crate::parse::source::Source;
 use crate::scene_error::SceneIoError;
@@ -18,7 +19,7 @@ impl Source<'_> {
         file_of_rays: &Key<String>,
         file: &Spanned<String>,
         shape: &[u64],
-        digests: &mut Vec<Sha256Digest>,
+        digests: &mut Vec<NamedDigest>,
     ) -> Result<Vec<f64>, SceneIoError> {
         let refuse = |message: String| self.error(file.span(), message);
         if file_of_rays.is_none() {
@@ -48,7 +49,7 @@ impl Source<'_> {
                 "`{name}.times_file`: the time of ray {index} is {time}; expected -1e12 to 1e12 seconds"
             )));
         }
-        digests.push(sha256(&bytes));
+        digests.push((file.get_ref().clone(), sha256(&bytes)));
         Ok(array.values)
     }
 }
