@@ -13,6 +13,7 @@ use raypencil::io::{MIN_ABANDONED_AGE, create_folder, remove_abandoned, write_re
 
 use crate::args::{self, CampaignCommand, CampaignMerge, CampaignReplay, CampaignRun};
 use crate::console::{Spinner, progress_bar, say};
+use crate::overwriting::ask;
 use crate::{Outcome, Trouble};
 
 pub(crate) fn campaign(command: &args::Campaign, json: bool) -> Result<Outcome, Trouble> {
@@ -55,9 +56,12 @@ fn run(command: &CampaignRun, json: bool) -> Result<Outcome, Trouble> {
     }
     if let Some(words) = &command.candidate_command {
         campaign = campaign.hunting(words)?;
+        campaign.candidate_ms = command.timeout;
+        campaign.partial = command.partial;
     }
     let bar = Bar::new(command.shard.terrains(&campaign).count() as u64);
     let start = Instant::now();
+    ask(&command.output, "a campaign")?;
     remove_abandoned(&command.output, MIN_ABANDONED_AGE);
     let result = run_shard(&campaign, command.shard, &command.output, &bar)?;
     bar.bar.finish_and_clear();

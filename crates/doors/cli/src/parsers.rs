@@ -167,6 +167,14 @@ pub(crate) fn shard(text: &str) -> Result<Shard, String> {
     }
 }
 
+/// A time in seconds, as milliseconds.
+pub(crate) fn seconds(text: &str) -> Result<u64, String> {
+    match number(text)? {
+        seconds if (0.001..=1e9).contains(&seconds) => Ok((seconds * 1e3).round() as u64),
+        _ => Err("expected 0.001 to 1e9 seconds".into()),
+    }
+}
+
 /// A number without its unit: the option's name in brackets has that.
 pub(crate) fn number(text: &str) -> Result<f64, String> {
     if let Ok(number) = text.trim().parse::<f64>() {

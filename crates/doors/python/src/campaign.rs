@@ -25,10 +25,19 @@ impl CampaignProgress for Terrains<'_> {
     }
 }
 
+/// A time in seconds as milliseconds.
+fn milliseconds(seconds: f64) -> Result<u64, Failure> {
+    match (0.001..=1e9).contains(&seconds) {
+        true => Ok((seconds * 1e3).round() as u64),
+        false => Err(Failure::new(format!("timeout is {seconds}; expected 0.001 to 1e9 seconds"))),
+    }
+}
+
 #[pymethods]
 impl CampaignCore {
     #[new]
-    #[pyo3(signature = (terrains, seed, scenes=None, rig=None, candidate_command=None))]
+    #[allow(clippy::too_many_arguments, reason = "the arguments of a Python function by their names")]
+    #[pyo3(signature = (terrains, seed, scenes=None, rig=None, candidate_command=None, timeout=None, partial=false))]
     fn new(
         py: Python<'_>,
         terrains: u64,
@@ -36,6 +45,8 @@ impl CampaignCore {
         scenes: Option<PathBuf>,
         rig: Option<PathBuf>,
         candidate_command: Option<String>,
+        timeout: Option<f64>,
+        partial: bool,
     ) -> PyResult<Self> {
         let made = py.detach(|| -> Result<Campaign, Failure> {
             let mut campaign = Campaign::new(seed, terrains).of_commit(raypencil_cli::commit());
@@ -44,6 +55,8 @@ impl CampaignCore {
             }
             if let Some(command) = &candidate_command {
                 campaign = campaign.hunting(command)?;
+                campaign.candidate_ms = timeout.map(milliseconds).transpose()?;
+                campaign.partial = partial;
             }
             Ok(campaign)
         });

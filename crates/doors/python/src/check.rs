@@ -5,8 +5,7 @@ use std::path::PathBuf;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use raypencil::harness::{CheckedPack, check_any_pack, pack_form};
-use raypencil::judge::JudgeShare;
-use raypencil::pack::{CheckError, Declarations, PackForm};
+use raypencil::pack::{CheckError, Declarations, PackForm, Verification};
 
 use crate::array::Arrays;
 use crate::declared::declared;
@@ -19,7 +18,7 @@ struct Question {
     pack: PathBuf,
     candidate: PathBuf,
     declared: Declarations,
-    share: JudgeShare,
+    share: Verification,
     output: Option<PathBuf>,
 }
 
@@ -106,7 +105,7 @@ pub(crate) fn check<'py>(
                 pack.display()
             )));
         }
-        let share = if verify { JudgeShare::All } else { JudgeShare::Sample };
+        let share = if verify { Verification::All } else { Verification::Drawn { seed: None } };
         let named = declared(&channels, scale)?;
         let declared = Declarations { precision, miss, ignores_faces: no_faces, ..named };
         let question = Question { pack, candidate, declared, share, output };

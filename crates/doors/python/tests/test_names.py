@@ -66,6 +66,7 @@ ONLY_COMMAND = {
     "cast --scale": "vertices are an array: they can be multiplied",
     "cast --up": "vertices are an array: their axes can be exchanged",
     "cast RAYS": "`origins`, `directions` and the ends of rays",
+    "check --seed": "is for a check that is made again, which a check from Python names the answer for",
     "check CANDIDATE": "`answers`, which may be arrays",
     "drive --both": "`with_` takes two renderers",
     "drive --stripes": "stripes from a file are taken by the command alone",

@@ -1,30 +1,21 @@
 //! A program under test: it gets the rays of a scene as a pack without answers, and its answers are checked.
 
-use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
 
 use raypencil_files::shortened;
 use raypencil_harness::{Candidate, judge_candidate};
+use raypencil_judge::{Item, Quantity};
 use raypencil_pack::write_questions;
-use raypencil_scene::Silent;
+use raypencil_scene::{SensorId, Silent};
 use raypencil_scene_io::{Subject, quoted};
 
+use crate::candidate_process::{self, Ended};
 use crate::error::CampaignError;
+use crate::plan::Campaign;
 use crate::record::{PartName, PartRecord};
-
-/// Maximum time of a candidate for one scene.
-const MAX_TIME: Duration = Duration::from_secs(1800);
-
-/// Time between two looks at whether the command has ended.
-const POLL: Duration = Duration::from_millis(20);
 
 /// Misses of one scene that are written as packs.
 const MAX_MISSES: usize = 2;
-
-/// Bytes of a failed command's messages that are kept.
-const MAX_MESSAGE_BYTES: u64 = 2000;
 
 /// Exit codes by which a shell says that there is no such program, or that it cannot be run.
 const NO_PROGRAM: [i32; 2] = [126, 127];
@@ -36,6 +27,7 @@ const NO_PROGRAM: [i32; 2] = [126, 127];
 /// # Errors
 /// A command that is no program; a file that cannot be written.
 pub(crate) fn hunt(
+    campaign: &Campaign,
     command: &str,
     part: PartName,
     subject: &Subject,
@@ -51,7 +43,7 @@ pub(crate) fn hunt(
     // No answers: the program cannot copy what it does not get.
     write_questions(subject, &pack, &Silent).map_err(Box::new)?;
     let failed = |why: String| PartRecord { failed: Some(why), ..PartRecord::of(part, 0, &[]) };
-    if let Some(why) = run(command, &pack, &out, folder.path())? {
+    if let Some(why) = run(campaign, command, [&pack, &out], folder.path())? {
         return Ok(failed(why));
     }
     let candidate = match Candidate::read(&out, &subject.scene) {
@@ -59,6 +51,9 @@ pub(crate) fn hunt(
         // The folder has another name each time.
         Err(error) => return Ok(failed(error.to_string().replace(&out.display().to_string(), "{out}"))),
     };
+    // A value alone, such as an incidence, may be right wherever it is: what is hit is said by faces and by distances.
+    let undecided: Vec<SensorId> =
+        subject.scene.sensors().filter(|sensor| !gives_any(&candidate, *sensor, &DECIDING)).collect();
     let judged = judge_candidate(subject, candidate, misses.map(|folder| (folder, MAX_MISSES)), &Silent)
         .map_err(Box::new)?;
     let sensors = &judged.report.check.sensors;
@@ -69,57 +64,55 @@ pub(crate) fn hunt(
         .filter(|sensor| sensor.compared() == 0 && sensor.not_compared > 0)
         .map(|sensor| sensor.sensor.to_string())
         .collect();
-    let failed = (!silent.is_empty())
-        .then(|| format!("it answers no ray of {}, or none that can be compared", silent.join(", ")));
+    let undecided: Vec<String> = undecided.iter().map(ToString::to_string).collect();
+    let failed = if !silent.is_empty() {
+        Some(format!("it answers no ray of {}, or none that can be compared", silent.join(", ")))
+    } else if !undecided.is_empty() && !campaign.partial {
+        let sensors = undecided.join(", ");
+        Some(format!(
+            "it says of no ray of {sensors} what it hits, by a face or a distance (--partial takes that)"
+        ))
+    } else {
+        None
+    };
     Ok(PartRecord { failed, candidate: Some(shortened(judged.report.candidate.name)), ..record })
 }
 
+/// Quantities of which one at least says what a ray hits.
+const DECIDING: [Quantity; 4] = [Quantity::Face, Quantity::Range, Quantity::Depth, Quantity::Point];
+
+/// Whether a candidate has one of these quantities of a sensor.
+fn gives_any(candidate: &Candidate, sensor: SensorId, quantities: &[Quantity]) -> bool {
+    let storage = &candidate.recorded.storage;
+    quantities.iter().any(|quantity| storage.contains_key(&(sensor, Item::from(*quantity))))
+}
+
 /// Runs the command; `Some`: why it failed.
-fn run(command: &str, pack: &Path, out: &Path, folder: &Path) -> Result<Option<String>, CampaignError> {
-    let io = |source| raypencil_files::FileError::Io { path: folder.to_path_buf(), action: "write", source };
+fn run(
+    campaign: &Campaign,
+    command: &str,
+    [pack, out]: [&Path; 2],
+    folder: &Path,
+) -> Result<Option<String>, CampaignError> {
     let word = |path: &Path| quoted(&path.to_string_lossy());
     let line = command.replace("{pack}", &word(pack)).replace("{out}", &word(out));
-    let mut messages = tempfile::tempfile().map_err(io)?;
-    let (shell, flag) = if cfg!(windows) { ("cmd", "/C") } else { ("sh", "-c") };
-    let mut child = Command::new(shell)
-        .args([flag, &line])
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(messages.try_clone().map_err(io)?)
-        .spawn()
-        .map_err(|error| CampaignError::Candidate {
-            command: command.into(),
-            found: format!("{shell} cannot be run: {error}"),
-            expected: "a shell".into(),
-        })?;
-    let start = Instant::now();
-    let status = loop {
-        if let Some(status) = child.try_wait().map_err(io)? {
-            break status;
-        }
-        if start.elapsed() > MAX_TIME {
-            // It may have ended in between.
-            let _ = child.kill();
-            let _ = child.wait();
-            return Ok(Some(format!("it ran for more than {} s", MAX_TIME.as_secs())));
-        }
-        std::thread::sleep(POLL);
+    let most = campaign.candidate_time();
+    let refused = |found: String, expected: &str| CampaignError::Candidate {
+        command: command.into(),
+        found,
+        expected: expected.into(),
     };
-    if status.success() {
-        return Ok(None);
-    }
-    let length = messages.seek(SeekFrom::End(0)).map_err(io)?;
-    messages.seek(SeekFrom::Start(length.saturating_sub(MAX_MESSAGE_BYTES))).map_err(io)?;
-    let mut tail = Vec::new();
-    messages.read_to_end(&mut tail).map_err(io)?;
-    let tail = String::from_utf8_lossy(&tail).replace(&folder.display().to_string(), "...");
-    let last = tail.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("it says nothing");
+    let (ended, said) = candidate_process::run(&line, most, folder)
+        .map_err(|error| refused(format!("no shell can be run: {error}"), "a shell"))?;
+    let status = match ended {
+        Ended::TooLate => return Ok(Some(format!("it ran for more than {} s", most.as_secs_f64()))),
+        Ended::With(status) if status.success() => return Ok(None),
+        Ended::With(status) => status,
+    };
+    let said = said.replace(&folder.display().to_string(), "...");
+    let last = said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("it says nothing").trim();
     if status.code().is_some_and(|code| NO_PROGRAM.contains(&code)) {
-        return Err(CampaignError::Candidate {
-            command: command.into(),
-            found: last.trim().to_string(),
-            expected: "a program that can be run".into(),
-        });
+        return Err(refused(last.to_string(), "a program that can be run"));
     }
-    Ok(Some(format!("it ended with {status}: {}", last.trim())))
+    Ok(Some(format!("it ended with {status}: {last}")))
 }

@@ -30,6 +30,7 @@
 //! ```
 
 mod candidate;
+mod candidate_process;
 pub mod cases;
 mod document;
 mod error;

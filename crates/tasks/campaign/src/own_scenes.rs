@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use raypencil_files::{FileError, file_sha256_hex};
-use raypencil_scene_io::{LoadedScene, Overrides, Setting, load, quoted};
+use raypencil_files::{FileError, file_sha256_hex, hex_digits, sha256};
+use raypencil_scene_io::{LoadedScene, Overrides, SceneInputs, SceneIoError, Setting, load, quoted};
 use serde::{Deserialize, Serialize};
 
 use crate::error::CampaignError;
@@ -11,11 +11,12 @@ use crate::error::CampaignError;
 /// Endings of the files that are scenes.
 const ENDINGS: [&str; 8] = ["toml", "glb", "gltf", "stl", "obj", "ply", "tif", "tiff"];
 
-/// Scenes of a folder. Two are equal if their files have the same names and contents, wherever they lie.
+/// Scenes of a folder. Two are equal if their files, and the files that these name, have the same names and contents, wherever
+/// they lie.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OwnScenes {
-    /// Each file's name with its SHA-256, in hexadecimal digits, sorted.
+    /// Each file's name with a SHA-256 of it and of all files that decide its scene, in hexadecimal digits, sorted.
     files: Vec<(String, String)>,
     /// SHA-256 of the scene file whose rig stands on each terrain.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -47,8 +48,16 @@ impl OwnScenes {
     /// A folder or file that cannot be read, a folder without scenes.
     pub fn read(folder: &Path, rig: Option<&Path>) -> Result<Self, CampaignError> {
         let io = |path: &Path, source| FileError::Io { path: path.to_path_buf(), action: "read", source };
+        for path in std::iter::once(folder).chain(rig) {
+            if path.to_str().is_none() {
+                return Err(CampaignError::Shards {
+                    found: format!("{}: the name is not UTF-8", path.display()),
+                    expected: "one that is".into(),
+                });
+            }
+        }
         let endings = if rig.is_some() { &ENDINGS[1..] } else { &ENDINGS[..] };
-        let mut files = Vec::new();
+        let mut names = Vec::new();
         for entry in std::fs::read_dir(folder).map_err(|error| io(folder, error))? {
             let path = entry.map_err(|error| io(folder, error))?.path();
             let is_scene = |end: &&str| path.extension().is_some_and(|given| given.eq_ignore_ascii_case(end));
@@ -56,11 +65,10 @@ impl OwnScenes {
                 continue;
             }
             let Some(name) = path.file_name().and_then(|name| name.to_str()) else { continue };
-            let (_, sha256) = file_sha256_hex(&path).map_err(|error| io(&path, error))?;
-            files.push((name.to_string(), sha256));
+            names.push(name.to_string());
         }
-        files.sort();
-        if files.is_empty() {
+        names.sort();
+        if names.is_empty() {
             return Err(CampaignError::Shards {
                 found: format!("{}: no scene is there", folder.display()),
                 expected: format!("files that end in .{}", endings.join(", .")),
@@ -70,7 +78,38 @@ impl OwnScenes {
             Some(rig) => Some(file_sha256_hex(rig).map_err(|error| io(rig, error))?.1),
             None => None,
         };
-        Ok(Self { files, rig_sha256, folder: folder.into(), rig: rig.map(PathBuf::from) })
+        let files = names.into_iter().map(|name| (name, String::new())).collect();
+        let mut scenes = Self { files, rig_sha256, folder: folder.into(), rig: rig.map(PathBuf::from) };
+        let inputs = SceneInputs::new();
+        let all: Vec<String> = (0..scenes.len() as u64)
+            .map(|terrain| scenes.files_sha256(terrain, &inputs))
+            .collect::<Result<_, _>>()
+            .map_err(|error| CampaignError::Scene(Box::new(error)))?;
+        scenes.files.iter_mut().zip(all).for_each(|((_, sha256), found)| *sha256 = found);
+        Ok(scenes)
+    }
+
+    /// SHA-256 of the digests of all files that decide a scene.
+    fn files_sha256(&self, terrain: u64, inputs: &SceneInputs) -> Result<String, SceneIoError> {
+        let file = self.folder.join(self.name(terrain));
+        let found = match &self.rig {
+            Some(rig) => inputs.of(&rig.to_string_lossy(), &[self.ground_setting(&file)?])?,
+            None => inputs.of(&file.to_string_lossy(), &[])?,
+        };
+        // Digests alone: the folder may lie anywhere.
+        let digests: Vec<&str> = found.iter().map(|input| input.sha256.as_str()).collect();
+        Ok(hex_digits(&sha256(digests.join(" ").as_bytes())))
+    }
+
+    /// SHA-256 of all that decides a scene.
+    pub(crate) fn sha256(&self, terrain: u64) -> &str {
+        usize::try_from(terrain).ok().and_then(|at| self.files.get(at)).map_or("", |(_, sha256)| sha256)
+    }
+
+    /// The same names, whatever the files hold.
+    pub(crate) fn without_bytes(&self) -> Self {
+        let files = self.files.iter().map(|(name, _)| (name.clone(), String::new())).collect();
+        Self { files, rig_sha256: self.rig_sha256.as_ref().map(|_| String::new()), ..self.clone() }
     }
 
     /// Number of scenes.
@@ -133,7 +172,7 @@ impl OwnScenes {
     }
 
     /// The setting that puts a terrain under the rig.
-    fn ground_setting(&self, file: &Path) -> Result<Setting, raypencil_scene_io::SceneIoError> {
+    fn ground_setting(&self, file: &Path) -> Result<Setting, SceneIoError> {
         let is_dem =
             file.extension().is_some_and(|end| end.to_string_lossy().to_lowercase().starts_with("tif"));
         // A path of a scene file is relative to that file; this one may lie anywhere.

@@ -2,7 +2,10 @@
 //!
 //! A terrain depends only on the campaign's seed and its own number, so a shard can run anywhere and at any time.
 
-use raypencil_scene_io::quoted;
+use std::time::Duration;
+
+use raypencil_files::command_files;
+use raypencil_scene_io::{InputFile, quoted};
 use serde::{Deserialize, Serialize};
 
 use crate::cases::fingerprint;
@@ -15,6 +18,9 @@ pub const MAX_TERRAINS: u64 = 1_000_000;
 
 /// Maximum number of shards of a campaign.
 pub const MAX_SHARDS: u64 = MAX_TERRAINS;
+
+/// Most time of a candidate for one scene, unless another is given.
+const DEFAULT_TIME: Duration = Duration::from_secs(1800);
 
 /// A campaign. Equal campaigns give equal results, byte for byte.
 ///
@@ -48,6 +54,15 @@ pub struct Campaign {
     /// Command of a program whose answers are checked, in place of the two renderers; see [`Campaign::hunting`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub candidate: Option<String>,
+    /// The files that its words name: the program and its arguments.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub candidate_files: Vec<InputFile>,
+    /// Most time that it has for one scene, milliseconds; `None`: half an hour.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub candidate_ms: Option<u64>,
+    /// Whether it may leave out what decides: which face a ray meets, and how far.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub partial: bool,
 }
 
 impl Campaign {
@@ -61,6 +76,9 @@ impl Campaign {
             cases: fingerprint().into(),
             scenes: None,
             candidate: None,
+            candidate_files: Vec::new(),
+            candidate_ms: None,
+            partial: false,
         }
     }
 
@@ -113,10 +131,39 @@ impl Campaign {
             Some(scenes) => scenes.options(),
             None => format!("--terrains {terrains}"),
         };
-        let candidate = candidate
+        let mut candidate = candidate
             .as_ref()
             .map_or(String::new(), |command| format!(" --candidate-command {}", quoted(command)));
+        candidate += &self.candidate_ms.map_or(String::new(), |ms| format!(" --timeout {}", ms as f64 / 1e3));
+        candidate += if self.partial { " --partial" } else { "" };
         format!("raypencil campaign {what} --seed {seed}{candidate} -o DIR")
+    }
+
+    /// Whether another campaign asks the same: it may find other bytes in the files of its scenes and of its candidate.
+    pub(crate) fn is_planned_as(&self, other: &Self) -> bool {
+        let plan = |campaign: &Self| Self {
+            scenes: campaign.scenes.as_ref().map(OwnScenes::without_bytes),
+            candidate_files: Vec::new(),
+            candidate_ms: None,
+            partial: false,
+            ..campaign.clone()
+        };
+        plan(self) == plan(other)
+    }
+
+    /// Whether another campaign finds the same bytes in all files that decide a terrain, and gives a candidate as much time and
+    /// room.
+    pub(crate) fn has_same_files(&self, other: &Self, terrain: u64) -> bool {
+        let scene =
+            |campaign: &Self| campaign.scenes.as_ref().map(|scenes| scenes.sha256(terrain).to_string());
+        let candidate =
+            |campaign: &Self| (campaign.candidate_files.clone(), campaign.candidate_time(), campaign.partial);
+        scene(self) == scene(other) && candidate(self) == candidate(other)
+    }
+
+    /// Most time that a candidate has for one scene.
+    pub(crate) fn candidate_time(&self) -> Duration {
+        self.candidate_ms.map_or(DEFAULT_TIME, Duration::from_millis)
     }
 
     /// What tells one campaign from another, in words.
@@ -134,7 +181,8 @@ impl Campaign {
     }
 
     /// The same with another program under test. For each scene the shell runs `command`, in which `{pack}` is the folder of
-    /// a pack without answers, and `{out}` an empty folder for the answers, as `raypencil check` takes them.
+    /// a pack without answers, and `{out}` an empty folder for the answers, as `raypencil check` takes them. A file that the
+    /// command names, a program on the path too, decides with its bytes.
     ///
     /// # Errors
     /// A command that lacks one of the two.
@@ -149,7 +197,9 @@ impl Campaign {
                 });
             }
         }
-        Ok(Self { candidate: Some(command.into()), ..self })
+        let input = |(name, sha256): (String, String)| InputFile { name, sha256 };
+        let candidate_files = command_files(command).into_iter().map(input).collect();
+        Ok(Self { candidate: Some(command.into()), candidate_files, ..self })
     }
 }
 

@@ -25,8 +25,8 @@ pub fn record_from_bytes(
     campaign: &Campaign,
     terrain: u64,
 ) -> Result<Option<TerrainRecord>, CampaignError> {
-    let Ok(read) = unsealed(bytes, file) else { return Ok(None) };
-    checked_record(read, file, campaign, terrain)
+    let Ok((own, record, _)) = unsealed(bytes, file) else { return Ok(None) };
+    checked_record((own, record), file, campaign, terrain)
 }
 
 /// Merges the results of all shards, as [`merge`](crate::merge()) does. Each has the name of its file. `None`: there are none.
@@ -38,7 +38,8 @@ pub fn merge_bytes(
     commit: Option<&str>,
 ) -> Result<Option<Merged>, CampaignError> {
     let read = |(file, bytes): &(PathBuf, Vec<u8>)| {
-        let result = checked_result(unsealed(bytes, file)?, file, commit)?;
+        let (campaign, result, _) = unsealed(bytes, file)?;
+        let result = checked_result((campaign, result), file, commit)?;
         Ok((file.clone(), result))
     };
     merge_results(results.iter().map(read))

@@ -1,15 +1,16 @@
 //! Runs the terrains of one shard, one after the other. Each leaves a file, so an interrupted shard can continue.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
-use raypencil_files::create_folder;
+use raypencil_files::{FileError, Journal, create_folder, file_sha256_hex, program_sha256};
+use raypencil_scene_io::InputFile;
 use serde::{Deserialize, Serialize};
 
 use crate::error::CampaignError;
 use crate::plan::{Campaign, Shard};
 use crate::record::TerrainRecord;
 use crate::record_check::check_record;
-use crate::sealed::{read_sealed, refused, write_sealed};
+use crate::sealed::{Made, read_sealed, refused, write_sealed};
 use crate::terrain::terrain;
 
 /// Maximum size of the record of a terrain, bytes. One has some thousands.
@@ -17,6 +18,9 @@ const MAX_RECORD_BYTES: u64 = 1 << 20;
 
 /// Maximum size of the result of a shard, bytes. One of 10,000 terrains has some 60 million.
 const MAX_RESULT_BYTES: u64 = 1 << 30;
+
+/// Folders of what terrains leave beside their records.
+const LEFT_FOLDERS: [&str; 2] = ["misses", "wrong"];
 
 /// Receives the progress of a campaign.
 pub trait CampaignProgress: Sync {
@@ -44,8 +48,9 @@ fn terrain_file(folder: &Path, terrain: u64) -> PathBuf {
 /// Runs a shard into `folder`, and returns the path of its result.
 ///
 /// A terrain whose record is in the folder, undamaged, is not run again. So an interruption loses at most the terrain
-/// that was running. Scenes with a wrong ray are written to `folder/wrong`, rays that a program under test answers wrongly to
-/// `folder/misses`.
+/// that was running. One whose files are not as they were, of the scene or of a program under test, or that another build has
+/// made, is run again, and what it left is removed. Scenes with a wrong ray are written to `folder/wrong`, rays that a program
+/// under test answers wrongly to `folder/misses`.
 ///
 /// # Errors
 /// A folder that holds another campaign; a file that cannot be written; a shard that is none, or a campaign with too many
@@ -66,11 +71,17 @@ pub fn run_shard(
     let mut rays = 0;
     for (done, &number) in (1..).zip(&numbers) {
         let file = terrain_file(folder, number);
-        let record = match earlier_record(&file, campaign, number)? {
+        let (earlier, made) = earlier_record(&file, campaign, number)?;
+        let record = match earlier {
             Some(record) => record,
             None => {
+                remove_left(folder, made);
+                let journal = Journal::begin(folder).map_err(|error| FileError::io(folder, "read", error))?;
                 let record = terrain(campaign, number, Some(folder))?;
-                write_sealed(&file, campaign, &record)?;
+                let left = journal.written().into_iter().filter(|(path, _)| is_left(path, number));
+                let left = left.map(|(path, sha256)| InputFile { name: path.display().to_string(), sha256 });
+                let made = Made { program: program_sha256().to_string(), left: left.collect() };
+                write_sealed(&file, campaign, &record, Some(&made))?;
                 rays += record.parts.iter().map(|part| part.compared).sum::<u64>();
                 record
             }
@@ -78,7 +89,7 @@ pub fn run_shard(
         records.push(record);
         progress.done(done, numbers.len() as u64, rays);
     }
-    write_sealed(&result, campaign, &ShardResult { shard, terrains: records })?;
+    write_sealed(&result, campaign, &ShardResult { shard, terrains: records }, None)?;
     Ok(result)
 }
 
@@ -96,7 +107,8 @@ pub(crate) fn read_result(
     file: &Path,
     commit: Option<&str>,
 ) -> Result<(Campaign, ShardResult), CampaignError> {
-    checked_result(read_sealed(file, MAX_RESULT_BYTES)?, file, commit)
+    let (campaign, result, _) = read_sealed(file, MAX_RESULT_BYTES)?;
+    checked_result((campaign, result), file, commit)
 }
 
 /// The result, if a shard of a program of this commit can have it.
@@ -122,7 +134,8 @@ pub(crate) fn checked_result(
     Ok((campaign, result))
 }
 
-/// The record of an earlier run. `None`: there is none, or it is damaged, and the terrain must be run again.
+/// The record of an earlier run, and what it was made by. `None`: there is none that is whole and still true, and the terrain
+/// must be run again.
 ///
 /// # Errors
 /// A record of another campaign.
@@ -130,10 +143,40 @@ fn earlier_record(
     file: &Path,
     campaign: &Campaign,
     number: u64,
-) -> Result<Option<TerrainRecord>, CampaignError> {
+) -> Result<(Option<TerrainRecord>, Option<Made>), CampaignError> {
     // What cannot be read is replaced: a pipe, a folder without rights, a file of any size.
-    let Ok(read) = read_sealed(file, MAX_RECORD_BYTES) else { return Ok(None) };
-    checked_record(read, file, campaign, number)
+    let Ok((own, record, made)) = read_sealed(file, MAX_RECORD_BYTES) else { return Ok((None, None)) };
+    let record = checked_record((own, record), file, campaign, number)?;
+    let is_of_this_program = made.as_ref().is_some_and(|made| made.program == program_sha256());
+    Ok((record.filter(|_| is_of_this_program), made))
+}
+
+/// Whether a file below the campaign's folder belongs to a terrain.
+fn is_left(path: &Path, terrain: u64) -> bool {
+    let parts: Vec<Component> = path.components().take(2).collect();
+    let [Component::Normal(folder), Component::Normal(name)] = parts.as_slice() else { return false };
+    LEFT_FOLDERS.iter().any(|left| *folder == *left)
+        && name.to_string_lossy().starts_with(&format!("terrain-{terrain:06}-"))
+}
+
+/// Removes what an earlier run of a terrain has left, if it is as it was written.
+fn remove_left(folder: &Path, made: Option<Made>) {
+    for InputFile { name, sha256 } in made.map(|made| made.left).unwrap_or_default() {
+        let name = Path::new(&name);
+        let is_below = name.components().all(|part| matches!(part, Component::Normal(_)));
+        let file = folder.join(name);
+        let is_file = std::fs::symlink_metadata(&file).is_ok_and(|found| found.is_file());
+        if is_below
+            && is_file
+            && LEFT_FOLDERS.iter().any(|left| name.starts_with(left))
+            && file_sha256_hex(&file).is_ok_and(|(_, found)| found == sha256)
+            && std::fs::remove_file(&file).is_ok()
+        {
+            // Its folders too, if that was their last file.
+            let inner = file.ancestors().skip(1).take_while(|above| *above != folder);
+            inner.take_while(|above| std::fs::remove_dir(above).is_ok()).for_each(drop);
+        }
+    }
 }
 
 /// The record, if it is that of this terrain. `None`: the terrain must be run again.
@@ -146,11 +189,13 @@ pub(crate) fn checked_record(
     campaign: &Campaign,
     number: u64,
 ) -> Result<Option<TerrainRecord>, CampaignError> {
-    if own != *campaign {
+    if !own.is_planned_as(campaign) {
         let expected = format!("one of {}: give another campaign a folder of its own", campaign.words());
         return Err(refused(file, format!("a record of {}", own.words()), expected));
     }
-    let is_own = record.terrain == number && check_record(&record, campaign).is_ok();
+    let is_own = record.terrain == number
+        && own.has_same_files(campaign, number)
+        && check_record(&record, campaign).is_ok();
     Ok(is_own.then_some(record))
 }
 

@@ -54,7 +54,7 @@ pub fn terrain(
                 file_facts: Default::default(),
             };
             let misses = found.map(|folder| folder.join("misses").join(name));
-            records.push(hunt(command, part, &subject, misses.as_deref())?);
+            records.push(hunt(campaign, command, part, &subject, misses.as_deref())?);
         }
         return Ok(TerrainRecord { terrain: number, faces, parts: records });
     }

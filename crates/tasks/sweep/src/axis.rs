@@ -1,5 +1,6 @@
 //! Parameters of a sweep: keys of a scene file, each with its values.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use raypencil_files::bytes;
@@ -10,6 +11,9 @@ use crate::error::SweepError;
 
 /// Maximum number of values of one key.
 const MAX_VALUES: usize = 1_000_000;
+
+/// Maximum number of keys of a list. A scene with a camera and three beams has some two hundred.
+const MAX_KEYS: usize = 1000;
 
 /// Maximum size of a list of runs, bytes.
 const MAX_LIST_BYTES: u64 = 1 << 26;
@@ -63,13 +67,8 @@ impl Axis {
                 None => rows.push(vec![part.to_string()]),
             }
         }
-        if let Some(twice) =
-            (1..rows.len()).find(|&at| rows[..at].contains(&rows[at])).filter(|_| rows.len() <= 10_000)
-        {
-            return Err(SweepError::axis(
-                text,
-                format!("{} is given twice; expected different values", rows[twice][0]),
-            ));
+        if let Some(twice) = first_twice(rows.iter().map(|row| row[0].as_str())) {
+            return Err(SweepError::axis(text, format!("{twice} is given twice; expected different values")));
         }
         Ok(Self { keys: vec![key.to_string()], rows })
     }
@@ -85,14 +84,14 @@ impl Axis {
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes.as_slice());
         let keys: Vec<String> =
             reader.headers().map_err(|error| refused(error.to_string()))?.iter().map(String::from).collect();
+        if keys.len() > MAX_KEYS {
+            return Err(refused(format!("line 1: {} keys; expected at most {MAX_KEYS}", keys.len())));
+        }
         for key in &keys {
             Setting::new(key, "").map_err(|error| refused(format!("line 1: {error}")))?;
         }
-        if let Some(twice) = (1..keys.len()).find(|&at| keys[..at].contains(&keys[at])) {
-            return Err(refused(format!(
-                "line 1: `{}` is given twice; expected different keys",
-                keys[twice]
-            )));
+        if let Some(twice) = first_twice(keys.iter().map(String::as_str)) {
+            return Err(refused(format!("line 1: `{twice}` is given twice; expected different keys")));
         }
         let mut rows = Vec::new();
         for record in reader.records() {
@@ -104,6 +103,12 @@ impl Axis {
         }
         Ok(Self { keys, rows })
     }
+}
+
+/// The first text that was there before.
+pub(crate) fn first_twice<'a>(texts: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let mut seen = BTreeSet::new();
+    texts.into_iter().find(|text| !seen.insert(*text))
 }
 
 /// Parts between commas that are not within brackets or quotes.
@@ -190,6 +195,16 @@ mod tests {
     }
 
     #[test]
+    fn a_long_list_of_values_is_looked_through_once() {
+        let values: Vec<String> = (0..200_000).map(|value| value.to_string()).collect();
+        let start = std::time::Instant::now();
+        let message = Axis::parse(&format!("a={},7", values.join(","))).unwrap_err().to_string();
+        assert!(message.ends_with("7 is given twice; expected different values"));
+        // Each against each would take minutes.
+        assert!(start.elapsed().as_secs() < 10);
+    }
+
+    #[test]
     fn commas_within_brackets_and_quotes_do_not_separate() {
         assert_eq!(values("a=[1, 2],[3, 4]"), ["[1, 2]", "[3, 4]"]);
         assert_eq!(values("a=\"x,y\",z"), ["\"x,y\"", "z"]);
@@ -228,12 +243,14 @@ mod tests {
         let list = Axis::read_list(&path).unwrap();
         assert_eq!(list.keys, ["camera.pitch_down_deg", "vehicle.position_m"]);
         assert_eq!(list.rows, [["20", "[1, 2]"], ["25", "[0,0]"]]);
+        let many = (0..150_000).map(|k| format!("k{k}")).collect::<Vec<_>>().join(",") + "\n";
         for (text, expected) in [
             ("a,b\n1\n", "runs.csv"),
             ("a,a\n1,2\n", "`a` is given twice"),
             ("a b\n1\n", "`a b` is no key"),
             ("a\n", "there is no run"),
             ("", "there is no run"),
+            (&many, "line 1: 150000 keys; expected at most 1000"),
         ] {
             std::fs::write(&path, text).unwrap();
             let message = Axis::read_list(&path).unwrap_err().to_string();

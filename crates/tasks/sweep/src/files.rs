@@ -55,6 +55,9 @@ pub fn write_sweep(
     charts: &[Chart],
     folder: &Path,
 ) -> Result<Written, SweepError> {
+    // Before anything is written: a chart may be of a name that there is not.
+    let drawings: Vec<_> =
+        charts.iter().map(|chart| Ok((chart, chart.draw(table)?))).collect::<Result<_, SweepError>>()?;
     create_folder(folder)?;
     let tables = [folder.join("table.csv"), folder.join("table.parquet")];
     table.write_csv(&tables[0])?;
@@ -64,8 +67,7 @@ pub fn write_sweep(
     if !charts.is_empty() {
         create_folder(&folder.join("charts"))?;
     }
-    for chart in charts {
-        let drawing = chart.draw(table)?;
+    for (chart, drawing) in drawings {
         let file = |ending: &str| folder.join("charts").join(format!("{}.{ending}", chart.file_stem()));
         write_atomically(file("svg"), |out| out.write_all(drawing.svg().as_bytes()))?;
         write_atomically(file("png"), |out| out.write_all(&drawing.png()))?;

@@ -4,7 +4,7 @@ use raypencil_files::{FileError, bytes, hex_digits, sha256};
 use raypencil_scene_io::{MAX_TOML_BYTES, Overrides, SceneSource, Setting, check_settings, load};
 use serde::{Deserialize, Serialize};
 
-use crate::axis::Axis;
+use crate::axis::{Axis, first_twice};
 use crate::error::SweepError;
 
 /// Maximum number of runs.
@@ -97,10 +97,9 @@ impl Sweep {
                 expected: "a value for each key".into(),
             });
         }
-        let keys = sweep.keys();
-        if let Some(twice) = (1..keys.len()).find(|&at| keys[..at].contains(&keys[at])) {
+        if let Some(twice) = first_twice(sweep.keys()) {
             return Err(SweepError::Plan {
-                found: format!("`{}` is given twice", keys[twice]),
+                found: format!("`{twice}` is given twice"),
                 expected: "each key once, with all of its values".into(),
             });
         }

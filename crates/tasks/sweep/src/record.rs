@@ -1,16 +1,20 @@
-//! Record of a run: a file that says by a digest whether it is whole.
+//! Record of a run: a file that says by a digest whether it is whole, and by others whether it is still that of its run.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use raypencil_files::{FileError, bytes, hex_digits, sha256, write_atomically};
+use raypencil_files::{
+    FileError, bytes, file_sha256_hex, hex_digits, program_sha256, sha256, write_atomically,
+};
+use raypencil_scene_io::{InputFile, SceneInputs};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::plan::Sweep;
+use crate::plan::{Sweep, Task};
 use crate::results::Named;
+use crate::table::is_formula;
 
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 /// Maximum size of a record, bytes. One has some hundred numbers.
 const MAX_RECORD_BYTES: u64 = 1 << 20;
@@ -52,20 +56,39 @@ impl Outcome {
     }
 }
 
+/// A run as it was made.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Record {
+    /// SHA-256 of the program that made it.
+    pub program: String,
+    /// The files that decided it.
+    pub inputs: Vec<InputFile>,
+    /// Files that it left, by their path in the folder of the sweep.
+    pub left: Vec<InputFile>,
+    /// What it gave.
+    pub outcome: Outcome,
+}
+
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Sealed {
     format: u32,
-    /// What decided the results; see [`Sweep::identity`].
+    /// What the plan decides of the results; see [`Sweep::identity`].
     run: String,
-    /// SHA-256 of the compact JSON of `(format, run, outcome)`.
+    /// SHA-256 of the compact JSON of `(format, run, record)`.
     sha256: String,
-    outcome: Outcome,
+    record: Record,
 }
 
-fn digest(run: &str, outcome: &Outcome) -> String {
-    let text = serde_json::to_string(&(FORMAT, run, outcome)).expect("JSON of numbers and texts");
+fn digest(run: &str, record: &Record) -> String {
+    let text = serde_json::to_string(&(FORMAT, run, record)).expect("JSON of numbers and texts");
     hex_digits(&sha256(text.as_bytes()))
+}
+
+/// The folder of a run's maps, in that of its sweep.
+pub(crate) fn maps_folder(run: u64) -> String {
+    format!("maps/{run:06}")
 }
 
 /// Path of a run's record. Its name is the start of what decides it.
@@ -73,20 +96,36 @@ pub(crate) fn record_file(folder: &Path, sweep: &Sweep, run: u64) -> PathBuf {
     folder.join("runs").join(format!("{}.json", &sweep.identity(run)[..32]))
 }
 
-pub(crate) fn write_record(
-    folder: &Path,
-    sweep: &Sweep,
-    run: u64,
-    outcome: &Outcome,
-) -> Result<(), FileError> {
+pub(crate) fn write_record(folder: &Path, sweep: &Sweep, run: u64, record: &Record) -> Result<(), FileError> {
     let identity = sweep.identity(run);
     let sealed = serde_json::json!({
         "format": FORMAT,
         "run": identity,
-        "sha256": digest(&identity, outcome),
-        "outcome": outcome,
+        "sha256": digest(&identity, record),
+        "record": record,
     });
     write_atomically(record_file(folder, sweep, run), |file| writeln!(file, "{sealed}"))
+}
+
+/// Whether a result is a part of a whole, by its name.
+fn is_share(name: &str) -> bool {
+    name.ends_with("_share")
+}
+
+/// Whether a result counts rays, pencils or pixels, by its name.
+fn is_count(name: &str) -> bool {
+    let of_classes = [
+        "compared",
+        "agree",
+        "tie",
+        "rounding",
+        "approximation",
+        "undecided",
+        "defects",
+        "not_compared",
+        "judged",
+    ];
+    of_classes.contains(&name) || [".hits", ".visible", ".lit_pixels"].iter().any(|end| name.ends_with(end))
 }
 
 /// Whether a run may have given that: whoever writes a record by hand can seal it, too.
@@ -100,9 +139,16 @@ fn is_possible(outcome: &Outcome) -> bool {
         let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || "_-.".contains(c);
         !name.is_empty() && name.len() <= MAX_NAME_CHARS && name.chars().all(allowed)
     };
-    let is_cell = |value: &Value| match value {
-        Value::Null | Value::Bool(_) | Value::Number(_) => true,
-        Value::String(text) => is_text(text),
+    // `run` and `refused` are columns of their own.
+    let is_name = |name: &str| is_name(name) && !["run", "refused"].contains(&name);
+    let is_cell = |name: &str, value: &Value| match value {
+        Value::Null | Value::Bool(_) => true,
+        Value::Number(number) if is_share(name) => {
+            number.as_f64().is_some_and(|one| (0.0..=1.0).contains(&one))
+        }
+        Value::Number(number) if is_count(name) => number.is_u64(),
+        Value::Number(_) => true,
+        Value::String(text) => is_text(text) && !is_formula(text),
         Value::Array(_) | Value::Object(_) => false,
     };
     let names: BTreeSet<&str> = results.iter().map(|(name, _)| name.as_str()).collect();
@@ -110,18 +156,38 @@ fn is_possible(outcome: &Outcome) -> bool {
     !results.is_empty()
         && results.len() <= MAX_RESULTS
         && names.len() == results.len()
-        && results.iter().all(|(name, value)| is_name(name) && is_cell(value))
+        && results.iter().all(|(name, value)| is_name(name) && is_cell(name, value))
+}
+
+/// Whether the folder has the results of a run, made by this program of files that are as they are now, and what it left.
+pub(crate) fn is_made(folder: &Path, sweep: &Sweep, run: u64, inputs: &SceneInputs) -> bool {
+    let Some(record) = read_record(folder, sweep, run) else { return false };
+    let now = || {
+        let settings = sweep.settings(run).ok()?;
+        inputs.of(&sweep.scene, &settings).ok()
+    };
+    let is_there = |left: &InputFile| {
+        let file = file_sha256_hex(&folder.join(&left.name));
+        file.is_ok_and(|(_, sha256)| sha256 == left.sha256)
+    };
+    // Maps lie by the number of the run, which may have been another.
+    let maps = maps_folder(run);
+    matches!(record.outcome, Outcome::Results(_))
+        && record.program == program_sha256()
+        && now().is_some_and(|now| now == record.inputs)
+        && (sweep.task != Task::Render || !record.left.is_empty())
+        && record.left.iter().all(|left| Path::new(&left.name).starts_with(&maps) && is_there(left))
 }
 
 /// Reads a record. `None`: it is not there, damaged, or of another run, and the run must be made again.
-pub(crate) fn read_record(folder: &Path, sweep: &Sweep, run: u64) -> Option<Outcome> {
+pub(crate) fn read_record(folder: &Path, sweep: &Sweep, run: u64) -> Option<Record> {
     let text = bytes::read_file(&record_file(folder, sweep, run), MAX_RECORD_BYTES).ok()?;
     let sealed: Sealed = serde_json::from_slice(&text).ok()?;
     let is_whole = sealed.format == FORMAT
         && sealed.run == sweep.identity(run)
-        && sealed.sha256 == digest(&sealed.run, &sealed.outcome)
-        && is_possible(&sealed.outcome);
-    is_whole.then_some(sealed.outcome)
+        && sealed.sha256 == digest(&sealed.run, &sealed.record)
+        && is_possible(&sealed.record.outcome);
+    is_whole.then_some(sealed.record)
 }
 
 #[cfg(test)]
@@ -134,8 +200,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         std::fs::create_dir(folder.path().join("runs")).unwrap();
         let sweep = Sweep::new("pyramids", Vec::new(), Task::Render, vec!["scanline".into()], false).unwrap();
-        write_record(folder.path(), &sweep, 0, outcome).unwrap();
-        read_record(folder.path(), &sweep, 0)
+        let record = Record { program: "a".into(), inputs: vec![], left: vec![], outcome: outcome.clone() };
+        write_record(folder.path(), &sweep, 0, &record).unwrap();
+        read_record(folder.path(), &sweep, 0).map(|record| record.outcome)
     }
 
     fn results(results: &[(&str, Value)]) -> Outcome {
@@ -149,6 +216,8 @@ mod tests {
                 ("camera.hits", json!(7)),
                 ("beam-0.flux_w", json!(0.5)),
                 ("share", Value::Null),
+                ("truth.found_share", json!(1.0)),
+                ("whereto.x_m", json!(-3.5)),
                 ("goal", json!("met")),
                 ("passes", json!(true)),
             ]),
@@ -162,6 +231,40 @@ mod tests {
     }
 
     #[test]
+    fn a_record_of_another_program_or_of_other_bytes_is_not_that_of_the_run() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        std::fs::create_dir(folder.join("runs")).unwrap();
+        std::fs::write(folder.join("scene.toml"), "version = 1\n").unwrap();
+        let scene = folder.join("scene.toml").display().to_string();
+        let sweep = Sweep::new(&scene, Vec::new(), Task::Drive, vec!["scanline".into()], false).unwrap();
+        let record = Record {
+            program: program_sha256().into(),
+            inputs: SceneInputs::new().of(&scene, &[]).unwrap(),
+            left: Vec::new(),
+            outcome: results(&[("frames", json!(7))]),
+        };
+        let other = "0".repeat(64);
+        let is_made = |sweep: &Sweep, change: &dyn Fn(&mut Record)| {
+            let mut record = record.clone();
+            change(&mut record);
+            write_record(folder, sweep, 0, &record).unwrap();
+            is_made(folder, sweep, 0, &SceneInputs::new())
+        };
+        let file = |name: &str| InputFile { name: name.into(), sha256: other.clone() };
+        assert!(is_made(&sweep, &|_| {}));
+        assert!(!is_made(&sweep, &|record| record.program = other.clone()));
+        assert!(!is_made(&sweep, &|record| record.inputs[0].sha256 = other.clone()));
+        assert!(!is_made(&sweep, &|record| record.inputs.push(file("g.obj"))));
+        assert!(!is_made(&sweep, &|record| record.inputs.clear()));
+        assert!(!is_made(&sweep, &|record| record.left.push(file("maps/000000/camera.exr"))));
+        assert!(!is_made(&sweep, &|record| record.outcome = Outcome::refused("no")));
+        // Whoever renders leaves maps.
+        let render = Sweep { task: Task::Render, ..sweep };
+        assert!(!is_made(&render, &|_| {}));
+    }
+
+    #[test]
     fn what_no_run_gives_is_no_record_although_it_is_sealed() {
         let many: Vec<(String, Value)> = (0..=MAX_RESULTS).map(|k| (format!("k{k}"), json!(k))).collect();
         for outcome in [
@@ -172,6 +275,14 @@ mod tests {
             results(&[("a,b", json!(1))]),
             results(&[(&"a".repeat(MAX_NAME_CHARS + 1), json!(1))]),
             results(&[("hits", json!([1, 2]))]),
+            results(&[("run", json!(1))]),
+            results(&[("refused", json!("no"))]),
+            results(&[("goal", json!("=cmd|' /C calc'!A0"))]),
+            results(&[("camera.hits", json!(-1))]),
+            results(&[("camera.hits", json!(0.5))]),
+            results(&[("defects", json!(-3))]),
+            results(&[("beam-0.visible_share", json!(1.5))]),
+            results(&[("truth.found_share", json!(-0.1))]),
             results(&[("hits", json!({ "of": 1 }))]),
             results(&[("goal", json!("\u{1b}]0;title\u{7}"))]),
             results(&[("goal", json!("a".repeat(MAX_TEXT_CHARS + 1)))]),

@@ -1,16 +1,22 @@
 //! Makes the runs of a part of a sweep, and joins the records of all parts.
 
+use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use raypencil_files::{FileError, bytes, create_folder, write_atomically};
+use raypencil_files::{FileError, OutputFolder, bytes, create_folder, write_atomically};
 use raypencil_harness::Contender;
+use raypencil_scene_io::{InputFile, SceneInputs};
 
 use crate::error::SweepError;
-use crate::plan::{Part, Sweep};
-use crate::record::{Outcome, read_record, write_record};
+use crate::plan::{Part, Sweep, Task};
+use crate::record::{Outcome, Record, is_made, maps_folder, read_record, record_file, write_record};
 use crate::work::Worker;
 
 const PLAN_FILE: &str = "sweep.json";
+
+/// Runs without a record that are counted.
+const MAX_MISSING: usize = 10_000;
 
 /// Maximum size of a plan, bytes.
 const MAX_PLAN_BYTES: u64 = 1 << 28;
@@ -27,7 +33,8 @@ pub trait SweepProgress: Sync {
 /// Makes the runs of a part into `folder`, those of one ground one after the other.
 ///
 /// A run whose record is in the folder, whole, is not made again: an interruption loses at most the run that was being
-/// made, and a sweep with more values goes on where an earlier one ended. A run that was refused is tried again.
+/// made, and a sweep with more values goes on where an earlier one ended. A run that was refused is tried again, and so is
+/// one whose files or maps are not as they were, or that another program made.
 ///
 /// # Errors
 /// A folder or a file that cannot be written; parameters that make no setting.
@@ -43,21 +50,43 @@ pub fn run_part(
     write_atomically(folder.join(PLAN_FILE), |file| writeln!(file, "{plan}"))?;
     let runs = sweep.order(part);
     let mut worker = Worker::new(sweep, contenders);
+    let inputs = SceneInputs::new();
     let mut made = 0;
     for (done, &run) in (1..).zip(&runs) {
-        if !matches!(read_record(folder, sweep, run), Some(Outcome::Results(_))) {
-            let outcome = worker.run(run, folder, &|done, planned| progress.frames(done, planned))?;
-            write_record(folder, sweep, run, &outcome)?;
+        if !is_made(folder, sweep, run, &inputs) {
+            let record = worker.run(run, folder, &inputs, &|done, planned| progress.frames(done, planned))?;
+            write_record(folder, sweep, run, &record)?;
             made += 1;
         }
         progress.runs(done, runs.len() as u64, made);
+    }
+    if sweep.task == Task::Render {
+        remove_maps_beyond(folder, sweep.runs())?;
+    }
+    Ok(())
+}
+
+/// Removes maps that a larger sweep has left: they would belong to no row of the table.
+fn remove_maps_beyond(folder: &Path, runs: u64) -> Result<(), SweepError> {
+    let Ok(entries) = std::fs::read_dir(folder.join("maps")) else { return Ok(()) };
+    for entry in entries.flatten() {
+        let number = entry.file_name().to_str().and_then(|name| name.parse::<u64>().ok());
+        let Some(number) = number.filter(|number| *number >= runs) else { continue };
+        if entry.file_name().to_str() == maps_folder(number).strip_prefix("maps/")
+            && entry.file_type().is_ok_and(|kind| kind.is_dir())
+        {
+            // What a run has not made stays.
+            OutputFolder::begin(&entry.path())?.finish()?;
+            let _ = std::fs::remove_dir(entry.path());
+        }
     }
     Ok(())
 }
 
 /// Whether each run of a part has its results in the folder.
 pub fn has_part(sweep: &Sweep, part: Part, folder: &Path) -> bool {
-    part.runs(sweep.runs()).all(|run| matches!(read_record(folder, sweep, run), Some(Outcome::Results(_))))
+    let inputs = SceneInputs::new();
+    part.runs(sweep.runs()).all(|run| is_made(folder, sweep, run, &inputs))
 }
 
 /// A sweep with the outcomes of all of its runs.
@@ -84,27 +113,58 @@ impl Finished {
     }
 }
 
+/// Names of the records in a folder.
+fn records_in(folder: &Path) -> Vec<OsString> {
+    let entries = std::fs::read_dir(folder.join("runs")).into_iter().flatten();
+    entries.flatten().map(|entry| entry.file_name()).collect()
+}
+
 /// Joins the records of all runs of a sweep, which are in any of the folders.
 ///
 /// # Errors
-/// Runs without a record.
+/// Runs without a record; runs of files of one name whose bytes differ.
 pub fn finish(sweep: &Sweep, folders: &[PathBuf]) -> Result<Finished, SweepError> {
     let mut outcomes = Vec::new();
     let mut missing = Vec::new();
+    let there: BTreeSet<OsString> = folders.iter().flat_map(|folder| records_in(folder)).collect();
+    // The bytes of each file, and the run that they were first seen in.
+    let mut files: BTreeMap<String, (String, u64)> = BTreeMap::new();
     for run in 0..sweep.runs() {
-        let records: Vec<Outcome> =
-            folders.iter().filter_map(|folder| read_record(folder, sweep, run)).collect();
-        let with_results = records.iter().position(|outcome| matches!(outcome, Outcome::Results(_)));
-        match records.into_iter().nth(with_results.unwrap_or(0)) {
-            Some(outcome) => outcomes.push(outcome),
-            None => missing.push(run),
+        // A plan may say millions of runs of which there is no record.
+        if missing.len() == MAX_MISSING {
+            break;
         }
+        if !there.contains(record_file(Path::new(""), sweep, run).file_name().unwrap_or_default()) {
+            missing.push(run);
+            continue;
+        }
+        let records: Vec<Record> =
+            folders.iter().filter_map(|folder| read_record(folder, sweep, run)).collect();
+        let with_results = records.iter().position(|record| matches!(record.outcome, Outcome::Results(_)));
+        let Some(record) = records.into_iter().nth(with_results.unwrap_or(0)) else {
+            missing.push(run);
+            continue;
+        };
+        for InputFile { name, sha256 } in record.inputs {
+            let (known, first) = files.entry(name.clone()).or_insert_with(|| (sha256.clone(), run));
+            if *known != sha256 {
+                return Err(SweepError::Plan {
+                    found: format!("{name} is another file for run {run} than for run {first}"),
+                    expected: "files that stay as they are for the whole sweep: make its runs again".into(),
+                });
+            }
+        }
+        outcomes.push(record.outcome);
     }
     let (Some(first), count) = (missing.first(), missing.len()) else {
         return Ok(Finished { sweep: sweep.clone(), outcomes });
     };
+    let more = if count == MAX_MISSING { "or more " } else { "" };
     Err(SweepError::Plan {
-        found: format!("{count} of {} runs have no record, the first of them run {first}", sweep.runs()),
+        found: format!(
+            "{count} {more}of {} runs have no record, the first of them run {first}",
+            sweep.runs()
+        ),
         expected: "all of them: run the parts that are missing, with the same build".into(),
     })
 }

@@ -101,7 +101,7 @@ impl SweepTable {
         self.columns[0].cells.len()
     }
 
-    /// The table as CSV. A missing value is empty.
+    /// The table as CSV. A missing value is empty. A text that a spreadsheet would compute has an apostrophe before it.
     ///
     /// # Errors
     /// A file that cannot be written.
@@ -110,7 +110,7 @@ impl SweepTable {
             let mut writer = csv::Writer::from_writer(file);
             writer.write_record(self.columns.iter().map(|column| &column.name))?;
             for run in 0..self.runs() {
-                writer.write_record(self.columns.iter().map(|column| column.cells.text(run)))?;
+                writer.write_record(self.columns.iter().map(|column| column.csv(run)))?;
             }
             writer.flush()
         })
@@ -139,7 +139,18 @@ impl SweepTable {
     }
 }
 
+/// Whether a spreadsheet takes a text for a formula, which may run a program.
+pub(crate) fn is_formula(text: &str) -> bool {
+    text.starts_with(['=', '+', '-', '@', '\t', '\r']) && text.parse::<f64>().is_err()
+}
+
 impl Column {
+    /// A cell of the file for spreadsheets.
+    fn csv(&self, run: usize) -> String {
+        let text = self.cells.text(run);
+        if is_formula(&text) { format!("'{text}") } else { text }
+    }
+
     fn field(&self) -> parquet::errors::Result<TypePtr> {
         let (physical, logical) = match self.cells {
             Cells::Integers(_) => (PhysicalType::INT64, None),
@@ -248,5 +259,19 @@ fn of_json(values: Vec<Value>) -> Cells {
             other => Some(other.to_string()),
         };
         Cells::Texts(values.into_iter().map(text).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_spreadsheet_would_compute_is_a_text_in_csv() {
+        let cells = ["=cmd|' /C calc'!A0", "@SUM(1)", "+x", "-3", "-1e5", "+7", "a=b", ""];
+        let texts = cells.iter().map(|text| Some(text.to_string())).collect();
+        let column = Column { name: "a".into(), cells: Cells::Texts(texts) };
+        let written: Vec<String> = (0..cells.len()).map(|run| column.csv(run)).collect();
+        assert_eq!(written, ["'=cmd|' /C calc'!A0", "'@SUM(1)", "'+x", "-3", "-1e5", "+7", "a=b", ""]);
     }
 }

@@ -1,16 +1,19 @@
 //! One run: the scene with its settings, rendered, compared or driven over.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use raypencil_drive::{DriveExtras, DriveJob, DriveProgress, drive_json, drive_with};
+use raypencil_files::{OutputFolder, program_sha256};
 use raypencil_harness::{Contender, Validator, write_maps};
 use raypencil_judge::JudgeShare;
 use raypencil_scene::{Request, Sampling, Silent};
-use raypencil_scene_io::{Grounds, LoadedScene, Overrides, Setting, load_sharing, quoted};
+use raypencil_scene_io::{
+    Grounds, InputFile, LoadedScene, Overrides, SceneInputs, Setting, load_sharing, quoted,
+};
 
 use crate::error::SweepError;
 use crate::plan::{Sweep, Task};
-use crate::record::Outcome;
+use crate::record::{Outcome, Record, maps_folder};
 use crate::results::{Named, drive_results, light_results, validation_results};
 
 /// Number of grounds that are kept: one for the run, and one for a scene that goes back and forth.
@@ -45,23 +48,33 @@ impl<'a> Worker<'a> {
         &mut self,
         number: u64,
         folder: &Path,
+        inputs: &SceneInputs,
         frames: &(dyn Fn(u64, u64) + Sync),
-    ) -> Result<Outcome, SweepError> {
+    ) -> Result<Record, SweepError> {
         let settings = self.sweep.settings(number)?;
+        // Before they are read: a file that changes meanwhile is then another one the next time.
+        let inputs = inputs.of(&self.sweep.scene, &settings).unwrap_or_default();
+        let record = Record {
+            program: program_sha256().to_string(),
+            inputs,
+            left: Vec::new(),
+            outcome: Outcome::Results(Vec::new()),
+        };
         let overrides = Overrides { settings: settings.clone(), ..Overrides::default() };
         let loaded = match load_sharing(&self.sweep.scene, &overrides, &self.grounds) {
             Ok(loaded) => loaded,
-            Err(error) => return Ok(Outcome::refused(&error.to_string())),
+            Err(error) => return Ok(Record { outcome: Outcome::refused(&error.to_string()), ..record }),
         };
         let arguments = arguments(&self.sweep.scene, &settings);
-        match self.sweep.task {
-            Task::Validate => Ok(Outcome::Results(self.validate(loaded, arguments))),
+        let outcome = match self.sweep.task {
+            Task::Validate => Outcome::Results(self.validate(loaded, arguments)),
             Task::Render => {
-                let maps = folder.join("maps").join(format!("{number:06}"));
-                Ok(Outcome::Results(self.render(loaded, arguments, &maps)?))
+                let (results, left) = self.render(loaded, arguments, folder, &maps_folder(number))?;
+                return Ok(Record { outcome: Outcome::Results(results), left, ..record });
             }
-            Task::Drive => Ok(self.drive(&loaded, arguments, frames)),
-        }
+            Task::Drive => self.drive(&loaded, arguments, frames),
+        };
+        Ok(Record { outcome, ..record })
     }
 
     fn validate(&mut self, loaded: LoadedScene, arguments: String) -> Vec<Named> {
@@ -69,12 +82,26 @@ impl<'a> Worker<'a> {
         validation_results(&self.validator.validate(subject, self.contenders, JudgeShare::Sample, &Silent))
     }
 
-    fn render(&self, loaded: LoadedScene, arguments: String, maps: &Path) -> Result<Vec<Named>, SweepError> {
+    /// Renders, and writes the maps in place of those of an earlier run of that number. They are returned as files of `folder`.
+    fn render(
+        &self,
+        loaded: LoadedScene,
+        arguments: String,
+        folder: &Path,
+        maps: &str,
+    ) -> Result<(Vec<Named>, Vec<InputFile>), SweepError> {
         let subject = loaded.into_subject(arguments);
         let renderer = &self.contenders[0].renderer;
         let output = renderer.render(&subject.scene, &Request::EVERYTHING);
-        write_maps(&output, renderer.name(), &subject, Sampling::Centres, maps)?;
-        Ok(light_results(&output, subject.scene.flux_model()))
+        let written = OutputFolder::begin(&folder.join(maps))?;
+        write_maps(&output, renderer.name(), &subject, Sampling::Centres, &folder.join(maps))?;
+        let file = |(name, sha256): (PathBuf, String)| InputFile {
+            name: format!("{maps}/{}", name.display()),
+            sha256,
+        };
+        let left = written.written().into_iter().map(file).collect();
+        written.finish()?;
+        Ok((light_results(&output, subject.scene.flux_model()), left))
     }
 
     fn drive(&self, loaded: &LoadedScene, arguments: String, frames: &(dyn Fn(u64, u64) + Sync)) -> Outcome {

@@ -125,7 +125,7 @@ fn changed(file: &Value) -> Vec<(String, String)> {
 
 /// The file before it is sealed.
 fn unsealed(campaign: &Value, contents: Value) -> Value {
-    json!({ "format": 2, "campaign": campaign, "sha256": "", "contents": contents })
+    json!({ "format": 3, "campaign": campaign, "sha256": "", "contents": contents })
 }
 
 /// A result of half a campaign of two terrains.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use raypencil::campaign::{PartName, Shard};
 
-use crate::parsers::{part_name, shard};
+use crate::parsers::{part_name, seconds, shard};
 
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true)]
@@ -59,6 +59,14 @@ pub(crate) struct CampaignRun {
     /// answers and {out} by that for the answers, as `check` takes them. What it answers wrongly is left as packs of single rays.
     #[arg(long, value_name = "'PROGRAM {pack} {out}'")]
     pub(crate) candidate_command: Option<String>,
+
+    /// Most time of the program for one scene, seconds; default: 1800. Then it is ended with all that it has started.
+    #[arg(long, value_name = "SECONDS", requires = "candidate_command", value_parser = seconds)]
+    pub(crate) timeout: Option<u64>,
+
+    /// Take answers that do not say what a ray hits, such as a light alone; without it such a sensor has no answer.
+    #[arg(long, requires = "candidate_command")]
+    pub(crate) partial: bool,
 
     /// Output folder; a campaign that was interrupted there is resumed.
     #[arg(short, long, value_name = "DIR", default_value = "out/campaign")]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import functools
 import os
-from functools import partial
 from typing import Any
 
 from . import _raypencil
@@ -50,6 +50,8 @@ def campaign(
     scenes: str | os.PathLike[str] | None = None,
     rig: str | os.PathLike[str] | None = None,
     candidate_command: str | None = None,
+    timeout: float | None = None,
+    partial: bool = False,
     shards: int | None = None,
     client: Any = None,
     retries: int = 3,
@@ -64,6 +66,8 @@ def campaign(
         scenes: a folder with scenes, terrains and elevation models of your own, in place of random ones.
         rig: a scene file whose vehicle, camera and beams stand on each terrain of ``scenes``.
         candidate_command: a program to hunt in: ``'my-tracer {pack} {out}'``; docs/guide/campaign.md.
+        timeout: most time of that program for one scene, seconds; half an hour by default.
+        partial: whether that program may leave out what decides, faces and distances.
         shards: parts of the campaign; 1, or with ``client`` one for ten terrains. The result does not depend on it.
         client: a ``distributed.Client``; then each shard is a task of its cluster. Its workers need this package, in the same
             version, and the files that are named. Without it the campaign runs here, on all cores.
@@ -81,9 +85,10 @@ def campaign(
     arguments: dict[str, Any] = {"terrains": terrains, "seed": seed, "candidate_command": candidate_command}
     arguments["scenes"] = None if scenes is None else os.path.abspath(os.fspath(scenes))
     arguments["rig"] = None if rig is None else os.path.abspath(os.fspath(rig))
+    arguments |= {"timeout": timeout, "partial": partial}
     core = _raypencil.CampaignCore(**arguments)
     folder = os.fspath(output)
-    task = partial(_shard, arguments)
+    task = functools.partial(_shard, arguments)
     work = Work("campaign", "terrains", core.terrains, TERRAINS_OF_A_SHARD, core.shard, core.has_result, task)
     run_shards(work, shards, folder, client, retries, progress)
     return CampaignResult(*core.merge([folder], folder))

@@ -37,6 +37,8 @@ def _parser() -> argparse.ArgumentParser:
             command.add_argument("--scenes", metavar="DIR")
             command.add_argument("--rig", metavar="SCENE.toml")
             command.add_argument("--candidate-command")
+            command.add_argument("--timeout", type=float, metavar="SECONDS")
+            command.add_argument("--partial", action="store_true")
         else:
             command.add_argument("scene", nargs="?", default="pyramids")
             command.add_argument("--set", action="append", default=[], metavar="KEY=VALUES")
@@ -63,7 +65,8 @@ def _on_cluster(words: list[str]) -> int:
             if given.command == "campaign":
                 found = campaign(
                     given.terrains, given.seed, output=given.output, scenes=given.scenes, rig=given.rig,
-                    candidate_command=given.candidate_command, shards=given.shards, client=client, progress=True,
+                    candidate_command=given.candidate_command, timeout=given.timeout, partial=given.partial, shards=given.shards,
+                    client=client, progress=True,
                 )  # fmt: skip
             else:
                 runs = None

@@ -67,6 +67,8 @@ class CampaignCore:
         scenes: _Path | None = None,
         rig: _Path | None = None,
         candidate_command: str | None = None,
+        timeout: float | None = None,
+        partial: bool = False,
     ) -> CampaignCore: ...
     @property
     def terrains(self) -> int: ...

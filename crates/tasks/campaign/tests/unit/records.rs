@@ -12,6 +12,11 @@ fn campaign() -> Campaign {
     Campaign::new(5, 4).of_commit(COMMIT)
 }
 
+/// What this program makes.
+fn this() -> Made {
+    Made { program: program_sha256().to_string(), left: Vec::new() }
+}
+
 /// A record whose numbers fit together.
 fn record(terrain: u64) -> TerrainRecord {
     let part = |part: PartName| PartRecord {
@@ -52,7 +57,7 @@ fn halves(change: impl FnOnce(&mut Campaign, &mut ShardResult)) -> TempDir {
         if index == 1 {
             change.take().unwrap()(&mut campaign, &mut result);
         }
-        write_sealed(&result_file(folder.path(), shard), &campaign, &result).unwrap();
+        write_sealed(&result_file(folder.path(), shard), &campaign, &result, None).unwrap();
     }
     folder
 }
@@ -158,9 +163,9 @@ fn counts_that_do_not_fit_together_are_refused() {
 fn any_flipped_bit_of_a_record_makes_its_terrain_run_again() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("terrain-000003.json");
-    write_sealed(&file, &campaign(), &record(3)).unwrap();
+    write_sealed(&file, &campaign(), &record(3), Some(&this())).unwrap();
     let clean = std::fs::read(&file).unwrap();
-    let read = || earlier_record(&file, &campaign(), 3);
+    let read = || earlier_record(&file, &campaign(), 3).map(|(record, _)| record);
     assert_eq!(read().unwrap(), Some(record(3)));
     for at in 0..clean.len() {
         // Each bit of a byte takes its turn.
@@ -177,9 +182,9 @@ fn any_flipped_bit_of_a_record_makes_its_terrain_run_again() {
         assert_eq!(read().unwrap(), None, "{length} bytes");
     }
     // Whole, and of another terrain; of another campaign.
-    write_sealed(&file, &campaign(), &record(2)).unwrap();
+    write_sealed(&file, &campaign(), &record(2), Some(&this())).unwrap();
     assert_eq!(read().unwrap(), None);
-    write_sealed(&file, &Campaign::new(6, 4).of_commit(COMMIT), &record(3)).unwrap();
+    write_sealed(&file, &Campaign::new(6, 4).of_commit(COMMIT), &record(3), Some(&this())).unwrap();
     assert!(read().unwrap_err().to_string().contains("seed 6"));
 }
 
@@ -191,7 +196,7 @@ fn what_is_no_file_is_not_waited_for() {
     let is_refused = |words: &str| {
         let error = merge(&[folder.path().to_path_buf()], COMMIT).unwrap_err().to_string();
         assert!(error.contains(words), "{error}");
-        assert_eq!(earlier_record(&file, &campaign(), 3).unwrap(), None);
+        assert_eq!(earlier_record(&file, &campaign(), 3).unwrap(), (None, None));
     };
     let made = std::process::Command::new("mkfifo").arg(&file).status().unwrap();
     assert!(made.success());

@@ -14,7 +14,7 @@ use raypencil_scene::Silent;
 use raypencil_scene_io::{Overrides, Setting, load};
 use raypencil_sweep::{
     Axis, Cells, Chart, Finished, Outcome, Part, Sweep, SweepError, SweepProgress, SweepTable, Task,
-    default_charts, finish, read_plan, run_part, write_sweep,
+    default_charts, finish, has_part, read_plan, run_part, write_sweep,
 };
 use serde_json::Value;
 
@@ -219,7 +219,7 @@ fn more_values_take_over_the_runs_of_before_and_another_build_does_not() {
     let house = House::new();
     let folder = house.folder("a");
     assert_eq!(made(&house.sweep(Task::Render, &["camera.pitch_down_deg=10,20"]), Part::WHOLE, &folder), 2);
-    let more = house.sweep(Task::Render, &["camera.pitch_down_deg=20,30,10"]);
+    let more = house.sweep(Task::Render, &["camera.pitch_down_deg=10,20,30"]);
     assert_eq!(made(&more, Part::WHOLE, &folder), 1);
     assert_eq!(results(&finished(&more, &folder), 2).len(), 13);
     let other = Sweep { build: "another".into(), ..more };
@@ -227,6 +227,87 @@ fn more_values_take_over_the_runs_of_before_and_another_build_does_not() {
     // Another scene under the same name.
     fs::write(&house.scene, SCENE.replace("48", "50")).unwrap();
     assert_eq!(made(&house.sweep(Task::Render, &["camera.pitch_down_deg=10,20"]), Part::WHOLE, &folder), 2);
+}
+
+/// All files below a folder with their bytes, but for lists of what was made.
+fn tree(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+        if entry.is_dir() {
+            found.extend(tree(&entry));
+        } else if !entry.ends_with(".raypencil-made") {
+            found.insert(entry.clone(), fs::read(entry).unwrap());
+        }
+    }
+    found
+}
+
+#[test]
+fn maps_are_those_of_their_row_whatever_the_folder_had() {
+    let house = House::new();
+    let render = |values: &str, folder: &Path| {
+        let sweep = house.sweep(Task::Render, &[&format!("camera.pitch_down_deg={values}")]);
+        made(&sweep, Part::WHOLE, folder)
+    };
+    let maps = |folder: &Path| -> BTreeMap<PathBuf, Vec<u8>> {
+        let below = folder.join("maps");
+        tree(&below)
+            .into_iter()
+            .map(|(path, bytes)| (path.strip_prefix(&below).unwrap().into(), bytes))
+            .collect()
+    };
+    let (used, fresh) = (house.folder("used"), house.folder("fresh"));
+    assert_eq!(render("20,25", &used), 2);
+    // Run 0 was another one, and run 1 is new.
+    assert_eq!(render("25,30", &used), 2);
+    assert_eq!(render("25,30", &fresh), 2);
+    assert_eq!(maps(&used), maps(&fresh));
+    assert_eq!(render("25,30", &used), 0);
+    // A map that was changed, or is gone, is made again with its run.
+    let map = used.join("maps/000001/beam-0.exr");
+    fs::write(&map, "changed").unwrap();
+    assert_eq!(render("25,30", &used), 1);
+    fs::remove_file(&map).unwrap();
+    assert_eq!(render("25,30", &used), 1);
+    assert_eq!(maps(&used), maps(&fresh));
+    // A smaller sweep leaves no map without a row, and what is not its own.
+    fs::write(used.join("maps/000001/mine.txt"), "mine").unwrap();
+    assert_eq!(render("25", &used), 0);
+    let left: Vec<PathBuf> = maps(&used).into_keys().filter(|path| !path.starts_with("000000")).collect();
+    assert_eq!(left, [PathBuf::from("000001/mine.txt")]);
+}
+
+#[test]
+fn a_ground_that_changes_behind_its_runs_has_them_made_again() {
+    let house = House::new();
+    let ground = |name: &str, height: f64| {
+        let corners = [[-50, -50], [50, -50], [50, 50], [-50, 50]];
+        let vertices = corners.map(|[x, y]| format!("v {x} {y} {height}\n")).concat();
+        fs::write(house.folder(name), format!("{vertices}f 1 2 3\nf 1 3 4\n")).unwrap();
+    };
+    ground("g.obj", 0.0);
+    ground("h.obj", 0.5);
+    let axes = ["terrain.file=g.obj,h.obj", "camera.pitch_down_deg=10,20"];
+    let sweep = || house.sweep(Task::Render, &axes);
+    let (folder, fresh) = (house.folder("a"), house.folder("fresh"));
+    assert_eq!(made(&sweep(), Part::WHOLE, &folder), 4);
+    assert_eq!(made(&sweep(), Part::WHOLE, &folder), 0);
+    assert!(has_part(&sweep(), Part::WHOLE, &folder));
+    // One ground of two: its runs alone.
+    ground("g.obj", 0.75);
+    assert!(!has_part(&sweep(), Part::WHOLE, &folder));
+    let earlier = house.folder("earlier");
+    assert_eq!(made(&sweep(), Part { index: 0, count: 2 }, &earlier), 2);
+    assert_eq!(made(&sweep(), Part::WHOLE, &folder), 2);
+    assert_eq!(made(&sweep(), Part::WHOLE, &fresh), 4);
+    let sweep = sweep();
+    assert_eq!(files(&finished(&sweep, &folder), &folder), files(&finished(&sweep, &fresh), &fresh));
+    // Parts of two grounds are no sweep.
+    ground("g.obj", 1.0);
+    let later = house.folder("later");
+    assert_eq!(made(&sweep, Part { index: 1, count: 2 }, &later), 2);
+    let refused = finish(&sweep, &[earlier, later]).unwrap_err().to_string();
+    assert!(refused.starts_with("g.obj is another file for run 1 than for run 0"), "{refused}");
 }
 
 #[test]
@@ -402,6 +483,18 @@ fn plans_that_are_none_are_refused() {
         fs::write(folder.join("sweep.json"), text).unwrap();
         assert!(read_plan(&folder).unwrap_err().to_string().contains("expected the plan of a sweep"));
     }
+    // Ten million runs, and not one of them made.
+    let plan_of = |axes: &[&str]| serde_json::to_string(&plan(axes).unwrap()).unwrap();
+    let axes: Vec<String> = (0..7).map(|key| format!("k{key}=1:10:1")).collect();
+    fs::write(folder.join("sweep.json"), plan_of(&axes.iter().map(String::as_str).collect::<Vec<_>>()))
+        .unwrap();
+    let start = std::time::Instant::now();
+    let refused = message(read_plan(&folder).and_then(|plan| finish(&plan, &[folder.clone()]).map(|_| plan)));
+    assert!(
+        refused.starts_with("10000 or more of 10000000 runs have no record, the first of them run 0"),
+        "{refused}"
+    );
+    assert!(start.elapsed().as_secs() < 5);
     // A plan that was changed by hand, with a row that is too short.
     let plan = serde_json::to_string(&plan(&["a=1,2"]).unwrap()).unwrap().replace("[\"2\"]", "[]");
     fs::write(folder.join("sweep.json"), plan).unwrap();

@@ -242,6 +242,159 @@ fn another_program_is_hunted() {
     assert_trouble(&hunt("tracer {pack}", "none"), &["it has no {out}"]);
 }
 
+/// Each file that decides a terrain is changed, and each time its record is made again, and no other.
+#[cfg(unix)]
+#[test]
+fn a_terrain_whose_files_change_is_hunted_again() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    let scenes = folder.join("scenes");
+    fs::create_dir(&scenes).unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
+    let scene = "version = 1\nvehicle = { position_m = [0, 0] }\ncamera = { width_px = 4, height_px = 4 }\nbeam = []\n";
+    let ground = |height: f64| format!("v -9 -9 {height}\nv 9 -9 0\nv 9 9 0\nv -9 9 0\nf 1 2 3 4\n");
+    write("scenes/a.toml", &format!("{scene}terrain = {{ file = \"../g.obj\" }}\n"));
+    write("scenes/b.toml", scene);
+    write("g.obj", &ground(0.0));
+    // A program that counts how often it is asked, and answers nothing.
+    write("prog", "#!/bin/sh\necho >>\"$3\"\ncat \"$4\" >/dev/null\nexit 3\n");
+    write("config", "1");
+    let mode = std::os::unix::fs::PermissionsExt::from_mode(0o755);
+    fs::set_permissions(folder.join("prog"), mode).unwrap();
+    write("count", "");
+    let count = || fs::read_to_string(folder.join("count")).unwrap().len();
+    let asked = |more: &str| {
+        let before = count();
+        let counter = folder.join("count");
+        // What it writes is no word of the command.
+        let command = format!(
+            "C={} && ./prog {{pack}} {{out}} \"$C\" config {more}",
+            counter.parent().unwrap().display()
+        );
+        let command = command.replace("\"$C\"", "\"$C\"/count");
+        let words = ["campaign", "--scenes", "scenes", "--candidate-command", &command, "-o", "out"];
+        let output = raypencil(folder, &words);
+        assert_eq!(output.status.code(), Some(1), "{}", super::text(&output.stderr));
+        count() - before
+    };
+    // Two scenes, of each the own part and the aimed one.
+    assert_eq!(asked(""), 4);
+    assert_eq!(asked(""), 0);
+    write("g.obj", &ground(0.5));
+    assert_eq!(asked(""), 2);
+    write("scenes/b.toml", &format!("{scene}flux = {{ model = \"eq1\" }}\n"));
+    assert_eq!(asked(""), 2);
+    write("config", "2");
+    assert_eq!(asked(""), 4);
+    let program = fs::read_to_string(folder.join("prog")).unwrap();
+    write("prog", &program.replace("exit 3", "exit 4"));
+    assert_eq!(asked(""), 4);
+    assert!(fs::read_to_string(folder.join("out/summary.md")).unwrap().contains("exit status: 4"));
+    assert_eq!(asked(""), 0);
+    // Other words are another question.
+    let words =
+        ["campaign", "--scenes", "scenes", "--candidate-command", "./prog {pack} {out} x y", "-o", "out"];
+    assert_trouble(&raypencil(folder, &words), &["own terrains", "folder of its own"]);
+}
+
+/// However the campaign ends, nothing of a program and of its files is left.
+#[cfg(unix)]
+#[test]
+fn a_campaign_that_is_killed_leaves_no_program_behind() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    fs::create_dir(folder.join("scenes")).unwrap();
+    fs::create_dir(folder.join("tmp")).unwrap();
+    let small = "version = 1\ncamera = { width_px = 4, height_px = 4 }\nbeam = []\n";
+    fs::write(folder.join("scenes/small.toml"), small).unwrap();
+    fs::write(folder.join("prog"), "sleep 300 & echo $! $$ >pids.part; mv pids.part pids; wait\n").unwrap();
+    let words =
+        ["campaign", "--scenes", "scenes", "--candidate-command", "sh prog {pack} {out}", "-o", "out"];
+    let mut campaign = command(folder, &words).env("TMPDIR", folder.join("tmp")).spawn().unwrap();
+    let until = |is_so: &dyn Fn() -> bool| {
+        let start = std::time::Instant::now();
+        while !is_so() {
+            assert!(start.elapsed().as_secs() < 20, "it does not come to that");
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+    };
+    until(&|| folder.join("pids").exists());
+    assert!(fs::read_dir(folder.join("tmp")).unwrap().count() > 0);
+    // As by kill -9: no code of its own runs any more.
+    campaign.kill().unwrap();
+    campaign.wait().unwrap();
+    let pids = fs::read_to_string(folder.join("pids")).unwrap();
+    let lives = |pid: &str| {
+        let sent = std::process::Command::new("kill").args(["-0", pid]).stderr(Stdio::null()).status();
+        sent.unwrap().success()
+    };
+    until(&|| !pids.split_whitespace().any(lives));
+    until(&|| fs::read_dir(folder.join("tmp")).unwrap().count() == 0);
+    // One that takes too long is ended, and told so.
+    let words = [&words[..], &["--timeout", "0.05"]].concat();
+    let output = command(folder, &words).env("TMPDIR", folder.join("tmp")).output().unwrap();
+    let shown = super::text(&output.stdout);
+    assert_eq!(output.status.code(), Some(1), "{shown}");
+    assert!(shown.contains("no answer: it ran for more than 0.05 s"), "{shown}");
+    assert_eq!(fs::read_dir(folder.join("tmp")).unwrap().count(), 0);
+    is_trouble(folder, "campaign --timeout 5", &["--candidate-command"]);
+}
+
+/// Right numbers that do not say what is hit are no answer, unless that is what was wanted.
+#[cfg(unix)]
+#[test]
+fn a_harmless_channel_is_no_answer() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    fs::create_dir(folder.join("scenes")).unwrap();
+    let small = "version = 1\ncamera = { width_px = 24, height_px = 20, pixel_pitch_um = 400 }\n\
+                 beam = [{ columns = 32, rows = 1 }]\n";
+    fs::write(folder.join("scenes/small.toml"), small).unwrap();
+    let left = |keep: &str| format!("find \"$2\" -name '*.npy' ! -name '{keep}' -delete");
+    let command = program(folder, "prog.sh", &left("incidence.V.npy"));
+    let text = fs::read_to_string(folder.join("prog.sh")).unwrap().replace("--with", "--format npy --with");
+    fs::write(folder.join("prog.sh"), &text).unwrap();
+    let hunt = |more: &[&str], code: i32| {
+        let words = ["campaign", "--scenes", "scenes", "--candidate-command", &command, "-o", "out"];
+        let output = raypencil(folder, &[&words[..], more].concat());
+        let shown = super::text(&output.stdout);
+        assert_eq!(output.status.code(), Some(code), "{shown}{}", super::text(&output.stderr));
+        shown
+    };
+    let shown = hunt(&[], 1);
+    assert!(shown.contains("own: no answer: it says of no ray of camera, beam-0 what it hits"), "{shown}");
+    hunt(&["--partial"], 0);
+    fs::write(folder.join("prog.sh"), text.replace("incidence.V", "range.T")).unwrap();
+    hunt(&[], 0);
+}
+
+/// What a program was wrong in is gone once it is mended.
+#[cfg(unix)]
+#[test]
+fn misses_of_a_mended_program_are_removed() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    fs::create_dir(folder.join("scenes")).unwrap();
+    let small = "version = 1\ncamera = { width_px = 48, height_px = 40, pixel_pitch_um = 200 }\n\
+                 beam = [{ columns = 64, rows = 2, thickness_mm = 60 }]\n";
+    fs::write(folder.join("scenes/small.toml"), small).unwrap();
+    let command = program(folder, "prog.sh", "");
+    let right = fs::read_to_string(folder.join("prog.sh")).unwrap();
+    fs::write(folder.join("prog.sh"), right.replace("tracer", "scanline-paper")).unwrap();
+    let hunt = |code: i32| {
+        let words = ["campaign", "--scenes", "scenes", "--candidate-command", &command, "-o", "out"];
+        let output = raypencil(folder, &words);
+        assert_eq!(output.status.code(), Some(code), "{}", super::text(&output.stdout));
+    };
+    hunt(1);
+    assert!(walk(&folder.join("out/misses")).iter().any(|path| path.ends_with("manifest.json")));
+    let mine = folder.join("out/misses/mine.txt");
+    fs::write(&mine, "mine").unwrap();
+    fs::write(folder.join("prog.sh"), right).unwrap();
+    hunt(0);
+    assert_eq!(walk(&folder.join("out/misses")), [mine]);
+}
+
 #[cfg(unix)]
 fn screen_of(folder: &Path, words: &[String]) {
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
@@ -301,15 +454,17 @@ fn a_campaign_takes_scenes_of_ones_own() {
         (&json["terrains"], &json["parts"]["own"]["compared"]),
         (&1.into(), &(48 * 40 + 64 * 2).into())
     );
-    // Another unit is another campaign.
-    fs::write(folder.join("rig-mm.toml"), rig("0.002")).unwrap();
-    let words = ["own terrains", "folder of its own"];
-    is_trouble(folder, "campaign --scenes meshes --rig rig-mm.toml -o meshed", &words);
+    // Another unit is another scene: it is run again.
+    let half = summary(folder, "meshed");
+    fs::write(folder.join("rig-mm.toml"), rig("0.0005")).unwrap();
+    passes(folder, "campaign --scenes meshes --rig rig-mm.toml -o meshed");
+    passes(folder, "campaign --scenes meshes --rig rig-mm.toml -o meshed-anew");
+    assert_ne!(summary(folder, "meshed"), half);
+    assert_eq!(summary(folder, "meshed"), summary(folder, "meshed-anew"));
     passes(folder, "campaign replay --scenes scenes --seed 1 --terrain 2 --part aimed -o again");
     assert!(folder.join("again/scene.toml").is_file());
-    // Another content is another campaign.
-    fs::write(scenes.join("b.toml"), format!("{small}flux = {{ model = \"eq1\" }}\n")).unwrap();
-    is_trouble(folder, "campaign --scenes scenes -o own", &["own terrains", "folder of its own"]);
+    // Other scenes are another campaign.
+    is_trouble(folder, "campaign --scenes meshes -o own", &["own terrains", "folder of its own"]);
     is_trouble(folder, "campaign --scenes nowhere", &["nowhere"]);
     fs::create_dir(folder.join("empty")).unwrap();
     is_trouble(folder, "campaign --scenes empty", &["no scene is there", ".toml"]);
