@@ -4,10 +4,9 @@ use std::path::Path;
 
 use raypencil_cast::{CandidateConventions, RayPackChecked, check_ray_pack, is_ray_pack};
 use raypencil_files::{FileError, FolderError};
-use raypencil_judge::JudgeShare;
 use raypencil_pack::{
-    CheckError, Checked, Declarations, InputChecked, PackForm, check_input, check_pack_by, is_input_pack,
-    write_document,
+    CheckError, Checked, Declarations, InputChecked, PackForm, Verification, check_input, check_pack_by,
+    is_input_pack, write_document,
 };
 use raypencil_report::Document;
 use raypencil_scene::Progress;
@@ -49,7 +48,7 @@ pub fn check_any_pack(
     pack: &Path,
     candidate: &Path,
     declarations: &Declarations,
-    share: JudgeShare,
+    share: Verification,
     progress: &dyn Progress,
 ) -> Result<CheckedPack, CheckError> {
     let conventions = |declared: &Declarations| CandidateConventions {

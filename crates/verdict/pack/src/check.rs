@@ -1,5 +1,6 @@
 //! Checks a candidate, another program's recording, against the answers of a pack.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use raypencil_diagnosis::{Diagnosis, diagnose};
@@ -14,11 +15,13 @@ use raypencil_scene_io::{LoadedScene, SceneIoError, Subject, probe_command, quot
 
 use crate::blind::blind_scene;
 use crate::check_report::BundleFindings;
+use crate::claims::{check_clauses, check_facts};
 use crate::declarations::Declarations;
-use crate::manifest::{FileRole, MANIFEST_NAME, Manifest, PackKind};
+use crate::manifest::{FileRole, FileType, MANIFEST_NAME, Manifest, ManifestFile, PackKind, pack_fault};
 use crate::provenance::{ProvenanceError, note};
-use crate::published::PackIdentity;
+use crate::published::{PackIdentity, PublishedPack};
 use crate::rays::{rays_name, rays_sha256};
+use crate::verification::{DRAWN, MAX_ALL, Verification, drawn_places, seed_anew};
 
 /// Why a candidate could not be checked against a pack.
 #[derive(Debug, thiserror::Error)]
@@ -73,6 +76,8 @@ pub struct Checked {
     pub exact: Answers,
     /// Whether the pack is blind: its answers were computed from its seed.
     pub is_blind: bool,
+    /// Whether the answers were read from the pack.
+    pub has_answers: bool,
     /// Which pack it is.
     pub pack: PackIdentity,
     /// What of the pack was found to be what the scene gives.
@@ -93,6 +98,8 @@ pub struct Verified {
     pub of: u64,
     /// Number of arrays of rays that are those of the scene, bit for bit.
     pub rays: u64,
+    /// Seed by which the answers were drawn, if they were.
+    pub seed: Option<u64>,
 }
 
 impl Checked {
@@ -136,20 +143,19 @@ pub fn check_pack(
     progress: &dyn Progress,
 ) -> Result<Checked, CheckError> {
     let declarations = Declarations { precision, ..Declarations::default() };
-    check_pack_by(pack, candidate, &declarations, JudgeShare::Sample, progress)
+    check_pack_by(pack, candidate, &declarations, Verification::Drawn { seed: None }, progress)
 }
 
 /// The same for a candidate about which more is declared: conventions that differ from those of `docs/formats/files.md`, and
 /// which of its channels is which map. Its `candidate.json` may declare the same. `share` is that of the pack's answers which
 /// are compared with the referee's: each answer by which the candidate is wrong always is, and the rays are always compared
-/// with those of the scene.
+/// with those of the scene. A published pack is known by its digest: of it a small sample is compared, unless all are asked for.
 ///
 /// ```
 /// use std::path::Path;
 ///
 /// use raypencil_files::write_npy;
-/// use raypencil_judge::JudgeShare;
-/// use raypencil_pack::{Declarations, check_pack_by};
+/// use raypencil_pack::{Declarations, Verification, check_pack_by};
 /// use raypencil_scene::{Image, Silent};
 ///
 /// // Ranges of -1 everywhere. As a declared "no hit" they are read, and wrong where something is hit.
@@ -162,7 +168,8 @@ pub fn check_pack(
 ///     channels: vec!["range.T=mine".parse()?],
 ///     ..Declarations::default()
 /// };
-/// let checked = check_pack_by(&pack, folder.path(), &declared, JudgeShare::Sample, &Silent)?;
+/// let share = Verification::Drawn { seed: None };
+/// let checked = check_pack_by(&pack, folder.path(), &declared, share, &Silent)?;
 /// assert!(!checked.passes());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -173,7 +180,7 @@ pub fn check_pack_by(
     pack: &Path,
     candidate: &Path,
     declarations: &Declarations,
-    share: JudgeShare,
+    share: Verification,
     progress: &dyn Progress,
 ) -> Result<Checked, CheckError> {
     progress.stage("reading the pack");
@@ -194,6 +201,21 @@ pub fn check_pack_by(
         let found = format!("scene.toml and terrain.glb have the digest {sha256}");
         return Err(answers(found, &format!("the manifest's {}", manifest.scene.sha256)));
     }
+    let is_known = identity.is_published();
+    if let Some(published) =
+        identity.of_that_name.filter(|one| identity.label.version.as_deref() == Some(one.version))
+        && !is_known
+    {
+        let PublishedPack { name, version, sha256 } = published;
+        return Err(answers(
+            format!(
+                "its {MANIFEST_NAME} says that it is {name} {version}, and has the digest {}",
+                identity.sha256
+            ),
+            &format!("{sha256}, as it is published, or another version"),
+        ));
+    }
+    check_facts(&manifest, &scene).map_err(|fault| pack_fault(&manifest_file, fault))?;
     // The candidate before the answers, so that its faults are reported soon.
     progress.stage("reading the candidate");
     let declared = declarations.clone().with_note(note(candidate, &scene)?.as_ref());
@@ -215,7 +237,7 @@ pub fn check_pack_by(
         (PackKind::Questions, _) => GroundTruth::certified(&scene, progress),
         _ => {
             progress.stage("reading the answers");
-            read_answers(pack, &manifest, &scene)?
+            read_answers(pack, &manifest, &scene, is_known)?
         }
     };
     let uncertified = |found: UncertifiedAnswer| {
@@ -229,12 +251,33 @@ pub fn check_pack_by(
     let computed = matches!(manifest.kind, PackKind::Blind | PackKind::Questions);
     let of =
         scene.sensors().filter_map(|sensor| scene.size(sensor)).map(|(w, h)| u64::from(w) * u64::from(h));
-    let of = of.sum();
-    // Answers that the referee has just given need not be asked again.
-    let answered = match if computed { (None, of) } else { truth.first_uncertified(share) } {
-        (Some(found), _) => return Err(uncertified(found)),
-        (None, asked) => asked,
+    let of: u64 = of.sum();
+    let seed = match share {
+        Verification::Drawn { seed } if !computed && !is_known && of > MAX_ALL => {
+            Some(seed.unwrap_or_else(seed_anew))
+        }
+        _ => None,
     };
+    // Answers that the referee has just given need not be asked again.
+    let (found, answered) = match share {
+        _ if computed => (None, of),
+        Verification::Drawn { .. } if is_known || seed.is_some() => {
+            // Sums of pixels, too.
+            let (found, asked) = truth.first_uncertified(JudgeShare::Sample);
+            let drawn = seed.map_or(Vec::new(), |seed| drawn_places(&scene, DRAWN, seed));
+            let of_drawn =
+                || drawn.iter().find_map(|(sensor, places)| truth.uncertified_among(*sensor, places));
+            (found.or_else(of_drawn), if seed.is_some() { DRAWN } else { asked })
+        }
+        _ => truth.first_uncertified(JudgeShare::All),
+    };
+    if let Some(found) = found {
+        return Err(uncertified(found));
+    }
+    if !is_known {
+        check_clauses(&manifest, &scene, share, progress)
+            .map_err(|fault| pack_fault(&manifest_file, fault))?;
+    }
     let check = check(&truth, &recorded, progress);
     if !computed {
         progress.stage("comparing the answers to wrong rays with the referee's");
@@ -242,7 +285,7 @@ pub fn check_pack_by(
             return Err(uncertified(found));
         }
     }
-    let verified = Verified { answers: answered, of, rays };
+    let verified = Verified { answers: answered, of, rays, seed };
     let diagnosis = if check.passes() {
         None
     } else {
@@ -259,6 +302,7 @@ pub fn check_pack_by(
         file_facts: Default::default(),
     };
     let is_blind = manifest.kind == PackKind::Blind;
+    let has_answers = manifest.kind == PackKind::Answers;
     let ray_sets = Vec::new();
     Ok(Checked {
         subject,
@@ -267,6 +311,7 @@ pub fn check_pack_by(
         diagnosis,
         exact,
         is_blind,
+        has_answers,
         pack: identity,
         verified,
         declared,
@@ -333,12 +378,21 @@ fn read_answers<'s>(
     pack: &Path,
     manifest: &Manifest,
     scene: &'s Scene,
+    is_known: bool,
 ) -> Result<GroundTruth<'s>, CheckError> {
     // Only listed files belong to the pack.
-    let answers = manifest.files.iter().filter(|file| file.role == FileRole::Answers);
-    let channels = read_listed_channels(pack, answers.map(|file| file.path.as_str()), &Limits::default())?;
-    let name = manifest.scene.name.clone();
-    let recorded = Recorded::of_channels(name, pack, scene, Precision::F64, &channels)?;
+    let answers = || manifest.files.iter().filter(|file| file.role == FileRole::Answers);
+    let read = |is_read: &dyn Fn(&ManifestFile) -> bool| -> Result<Recorded, CheckError> {
+        let paths = answers().filter(|file| is_read(file)).map(|file| file.path.as_str());
+        let channels = read_listed_channels(pack, paths, &Limits::default())?;
+        Ok(Recorded::of_channels(manifest.scene.name.clone(), pack, scene, Precision::F64, &channels)?)
+    };
+    // Each answer stands twice, as NPY and rounded as EXR. Where both are there they were compared when they were read.
+    let singles: BTreeSet<(SensorId, Item)> = match is_known {
+        true => BTreeSet::new(),
+        false => read(&|file| file.kind == Some(FileType::Exr))?.storage.into_keys().collect(),
+    };
+    let recorded = read(&|_| true)?;
     for sensor in scene.sensors() {
         for quantity in Quantity::ALL.into_iter().filter(|one| one.is_of(sensor) && *one != Quantity::Hit) {
             let items: Vec<Item> = match quantity {
@@ -348,6 +402,15 @@ fn read_answers<'s>(
             let is_flux = matches!(quantity, Quantity::PencilFlux | Quantity::PixelFlux);
             let others = items.iter().filter(|_| is_flux).map(|item| Item { is_other_model: true, ..*item });
             for item in items.iter().copied().chain(others) {
+                if !is_known && !singles.contains(&(sensor, item)) {
+                    return Err(CheckError::Answers {
+                        pack: pack.to_path_buf(),
+                        found: format!("no {quantity} of {sensor} in an EXR file that {MANIFEST_NAME} lists"),
+                        expected: format!(
+                            "every quantity in {sensor}.exr, beside the arrays in double precision"
+                        ),
+                    });
+                }
                 let storage = recorded.storage.get(&(sensor, item));
                 if !matches!(storage, Some(Storage::F64 | Storage::Whole)) {
                     return Err(CheckError::Answers {

@@ -9,7 +9,8 @@ use raypencil_judge::{Judge, JudgeShare};
 use raypencil_naive::{Clause, Fault, Naive};
 use raypencil_referee::Ruling;
 use raypencil_scene::{
-    Hit, HitQuantity, Place, Precision, Progress, RenderOutput, Renderer, Request, Returns, Scene, SensorId,
+    FluxModel, Hit, HitQuantity, Place, Precision, Progress, RenderOutput, Renderer, Request, Returns, Scene,
+    SensorId,
 };
 
 /// The fewest rays that must decide each clause of a blind pack.
@@ -44,13 +45,23 @@ const MAX_TESTS: f64 = 1e10;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn can_count_clauses(scene: &Scene) -> bool {
+    tests(scene) <= MAX_TESTS
+}
+
+/// The clauses that a pack with this model of light has to test.
+pub(crate) fn needed_clauses(model: FluxModel) -> impl Iterator<Item = Clause> {
+    Clause::ALL.iter().copied().filter(move |clause| clause.kind().is_in_packs_of(model))
+}
+
+/// Tests of a ray against a face that counting takes.
+pub(crate) fn tests(scene: &Scene) -> f64 {
     let rays: f64 = scene
         .sensors()
         .filter_map(|sensor| scene.size(sensor))
         .map(|(columns, rows)| f64::from(columns) * f64::from(rows))
         .sum();
     let faults = Clause::ALL.iter().map(|clause| clause.faults().len()).sum::<usize>();
-    rays * scene.mesh().faces().len() as f64 * faults as f64 <= MAX_TESTS
+    rays * scene.mesh().faces().len() as f64 * faults as f64
 }
 
 /// Counts the rays that decide each clause which a pack of this scene has to test.
@@ -59,17 +70,16 @@ pub fn can_count_clauses(scene: &Scene) -> bool {
 pub fn clause_rays(scene: &Scene, progress: &dyn Progress) -> Vec<ClauseRays> {
     let judge = Judge::new(scene, JudgeShare::All);
     let honest = Naive { fault: None }.render(scene, &Request::EVERYTHING);
-    let needed = |clause: &&Clause| clause.kind().is_in_packs_of(scene.flux_model());
-    let count = |clause: &Clause| {
+    let count = |clause: Clause| {
         progress.stage(&format!("clause {}", clause.key()));
         let of_fault = |fault: &Fault| {
             let faulty = Naive { fault: Some(*fault) }.render(scene, &Request::EVERYTHING);
             wrong_rays(&judge, &honest, &faulty)
         };
         let rays = clause.faults().iter().map(of_fault).min().unwrap_or(0);
-        ClauseRays { clause: *clause, rays }
+        ClauseRays { clause, rays }
     };
-    Clause::ALL.iter().filter(needed).map(count).collect()
+    needed_clauses(scene.flux_model()).map(count).collect()
 }
 
 /// Number of rays on which `faulty` is wrong.

@@ -17,6 +17,7 @@
 //! note_values -> provenance          the candidate's note
 //! declarations -> check              what is declared about a candidate, also in its note; the check of a candidate
 //! published                          version and licence of a pack, and the packs that are published
+//! verification, claims               which answers are compared with the referee's; what else a manifest says of its scene
 //! input/                             a glTF file, the triangles that it must become, and the check of a loader
 //! check_report/                      a check in its one form, which every report prints
 //! ```
@@ -41,6 +42,7 @@ mod blind;
 mod canonical_nan;
 mod check;
 mod check_report;
+mod claims;
 mod clauses;
 mod declarations;
 mod exr_map;
@@ -53,6 +55,7 @@ mod published;
 mod rays;
 mod split_mix;
 mod units;
+mod verification;
 mod write;
 
 pub use bench::{BENCH_BEAMS, benched, with_bench};
@@ -75,6 +78,7 @@ pub use manifest::{
 pub use note_values::{ChannelNames, MissNumber};
 pub use provenance::{Arithmetic, MonteCarloTotal, Provenance, ProvenanceError, note, precision_of};
 pub use published::{PUBLISHED, PackIdentity, PackLabel, PublishedPack};
+pub use verification::{DRAWN, MAX_ALL, Verification};
 pub use write::{PackError, write_pack, write_questions};
 
 #[cfg(doctest)]

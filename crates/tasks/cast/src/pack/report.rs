@@ -55,6 +55,7 @@ impl RayPackChecked {
             pack_sha256: self.pack_sha256.clone(),
             label: PackLabel::NONE,
             is_published: false,
+            has_answers: false,
             candidate: self.name.clone(),
             arithmetic: Some(self.comparison.precision),
             totals: bundle.items.clone(),

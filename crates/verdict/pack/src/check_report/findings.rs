@@ -223,6 +223,8 @@ pub struct CheckFindings {
     pub label: PackLabel,
     /// Whether it is the published pack of its name.
     pub is_published: bool,
+    /// Whether the answers were read from the pack: else nobody needs to know it.
+    pub has_answers: bool,
     /// Name of the candidate.
     pub candidate: String,
     /// Arithmetic of the candidate; triangles are copied, not computed.
@@ -321,6 +323,17 @@ impl CheckFindings {
         }
     }
 
+    /// What the verdict adds of a pack with answers that nobody has published.
+    fn of_unknown_pack(&self) -> String {
+        match self.has_answers && !self.is_published {
+            true => {
+                let short: String = self.pack_sha256.chars().take(12).collect();
+                format!(" (By a pack that is not published: sha256 {short}...)")
+            }
+            false => String::new(),
+        }
+    }
+
     /// The document that all reports print.
     pub fn document(self) -> Document {
         let by_class = self.by_class();
@@ -382,7 +395,7 @@ impl CheckFindings {
                 "defects" => Outcome::Fails,
                 _ => Outcome::Open,
             },
-            headline: self.sentence(),
+            headline: self.sentence() + &self.of_unknown_pack(),
             remarks,
             explanation: Vec::new(),
             counts: Vec::new(),

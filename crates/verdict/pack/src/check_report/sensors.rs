@@ -74,7 +74,12 @@ fn findings(checked: &Checked) -> CheckFindings {
     let of_form = [
         ("scene", json!({ "name": subject.name, "sha256": subject.sha256 })),
         ("blind", (*is_blind).into()),
-        ("verified", json!({ "answers": verified.answers, "of": verified.of, "ray_files": verified.rays })),
+        (
+            "verified",
+            json!({
+                "answers": verified.answers, "of": verified.of, "seed": verified.seed, "ray_files": verified.rays,
+            }),
+        ),
         ("diagnosis", diagnosis_json.into()),
         ("unknown_channels", recorded.unknown.clone().into()),
     ];
@@ -88,6 +93,7 @@ fn findings(checked: &Checked) -> CheckFindings {
         pack_sha256: pack.sha256.clone(),
         label: pack.label.clone(),
         is_published: pack.is_published(),
+        has_answers: checked.has_answers,
         candidate: recorded.name.clone(),
         arithmetic: Some(recorded.precision),
         totals: totals.chain(of_sets).collect(),
@@ -222,9 +228,13 @@ fn notes(checked: &Checked) -> Vec<String> {
 }
 
 /// Which pack it was and what of it was verified, in a sentence.
-fn pack_words(pack: &PackIdentity, Verified { answers, of, rays }: Verified) -> String {
+fn pack_words(pack: &PackIdentity, Verified { answers, of, rays, seed }: Verified) -> String {
     let all = if answers == of { "all " } else { "" };
-    let hint = if answers == of { "" } else { " (all: --verify)" };
+    let hint = match seed {
+        _ if answers == of => String::new(),
+        Some(seed) => format!(", drawn by seed {seed}, (all: --verify)"),
+        None => " (all: --verify)".into(),
+    };
     let rays = counted(rays, "array of rays is that", "arrays of rays are those");
     format!(
         "The pack ({}): {all}{} of {} answers are the referee's{hint}, and so is each by which a ray is wrong; {rays} of its scene.",

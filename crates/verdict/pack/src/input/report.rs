@@ -73,6 +73,7 @@ fn findings(checked: &InputChecked) -> CheckFindings {
         pack_sha256: checked.pack_sha256.clone(),
         label: PackLabel::NONE,
         is_published: false,
+        has_answers: false,
         candidate: checked.name.clone(),
         arithmetic: None,
         bundles: vec![bundle],

@@ -314,6 +314,10 @@ fn a_changed_pack_is_refused() {
         }
     }
     fs::write(&manifest, json.to_string()).unwrap();
+    // It still calls itself the published version.
+    assert_trouble(&check(), &["says that it is pyramids 1.0.0", "as it is published, or another version"]);
+    json["version"] = "1.0.1".into();
+    fs::write(&manifest, json.to_string()).unwrap();
     assert_trouble(&check(), &["is not the referee's", "camera pixel"]);
     fs::remove_file(&manifest).unwrap();
     assert_trouble(&check(), &["manifest.json"]);
@@ -339,7 +343,11 @@ fn a_blind_pack_has_no_answers_and_can_be_checked() {
     // A blind pack that replaces a pack with answers removes those answers.
     copy_tree(&pack("pyramids"), &blind);
     assert!(blind.join("camera/range.T.npy").exists() && blind.join("camera.exr").exists());
-    assert_passes(&raypencil(folder.path(), &["pack", "--blind", "7", "-o", "blind"]));
+    // It does so only if it is told to.
+    let replaced = raypencil(folder.path(), &["pack", "--blind", "7", "-o", "blind"]);
+    assert_trouble(&replaced, &["blind: it has results of a pack of pyramids, version 1.0.0", "--force"]);
+    assert!(blind.join("camera/range.T.npy").exists());
+    assert_passes(&raypencil(folder.path(), &["pack", "--blind", "7", "-o", "blind", "--force"]));
     assert!(!blind.join("camera/range.T.npy").exists());
     let mut names: Vec<String> = fs::read_dir(&blind)
         .unwrap()

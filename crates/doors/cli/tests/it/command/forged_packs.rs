@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use raypencil::Image;
-use raypencil::io::{Limits, file_sha256_hex, read_npy, write_npy};
+use raypencil::io::{Limits, Raster, file_sha256_hex, read_exr, read_npy, write_exr, write_npy};
 use tempfile::TempDir;
 
 use super::{assert_trouble, raypencil, screen};
@@ -34,25 +34,35 @@ fn seal(pack: &Path) {
     fs::write(path, manifest.to_string()).unwrap();
 }
 
-/// Takes a map of single precision, which would tell of a change, out of a pack.
-fn without_map(pack: &Path, map: &str) {
+/// Changes the manifest of a pack.
+fn with_manifest(pack: &Path, change: impl FnOnce(&mut serde_json::Value)) {
     let path = pack.join("manifest.json");
     let mut manifest: serde_json::Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
-    manifest["files"].as_array_mut().unwrap().retain(|file| file["path"] != map);
+    change(&mut manifest);
     fs::write(path, manifest.to_string()).unwrap();
-    fs::remove_file(pack.join(map)).unwrap();
 }
 
-/// Changes one number of a file of one channel by one part in a thousand, where it is a number; returns whether it was.
-fn forge(pack: &Path, file: &str, cell: usize) -> bool {
-    let path = pack.join(file);
-    let (width, height, mut cells) = cells(&path);
+/// Writes numbers of a channel in place of a pack's own, as NPY and rounded as EXR.
+fn write_channel(pack: &Path, sensor: &str, channel: &str, (width, height): (u32, u32), cells: Vec<f64>) {
+    let path = pack.join(format!("{sensor}.exr"));
+    let mut exr = read_exr(&path, &Limits::default()).unwrap();
+    assert!(exr.channels.contains_key(channel), "{channel}");
+    let singles = cells.iter().map(|cell| *cell as f32).collect();
+    exr.insert(channel, Raster::F32(Image::from_cells(width, height, singles)));
+    write_exr(&path, &exr).unwrap();
+    let path = pack.join(sensor).join(format!("{channel}.npy"));
+    write_npy(path, &[&Image::from_cells(width, height, cells)]).unwrap();
+    seal(pack);
+}
+
+/// Changes one range by one part in a thousand, where it is a number; returns whether it was.
+fn forge(pack: &Path, cell: usize) -> bool {
+    let (width, height, mut cells) = cells(&pack.join("camera/range.T.npy"));
     if !cells[cell].is_finite() {
         return false;
     }
     cells[cell] *= 1.001;
-    write_npy(&path, &[&Image::from_cells(width, height, cells)]).unwrap();
-    seal(pack);
+    write_channel(pack, "camera", "range.T", (width, height), cells);
     true
 }
 
@@ -61,22 +71,79 @@ fn no_right_renderer_is_wrong_by_a_changed_answer() {
     let mut forged = 0;
     let whole = packed();
     let folder = whole.path();
-    without_map(&folder.join("pack"), "camera.exr");
-    let original = fs::read(folder.join("pack/camera/range.T.npy")).unwrap();
-    // Most of these rays are not of the sample.
+    let original = ["camera/range.T.npy", "camera.exr"]
+        .map(|name| (folder.join("pack").join(name), fs::read(folder.join("pack").join(name)).unwrap()));
     for cell in (0..96).step_by(7) {
-        fs::write(folder.join("pack/camera/range.T.npy"), &original).unwrap();
-        if !forge(&folder.join("pack"), "camera/range.T.npy", cell) {
+        original.iter().for_each(|(path, bytes)| fs::write(path, bytes).unwrap());
+        if !forge(&folder.join("pack"), cell) {
             continue;
         }
         forged += 1;
-        let output = raypencil(folder, &["check", "pack", "right"]);
-        assert_trouble(&output, &["its answer to", "is not the referee's"]);
+        // Who copies the changed answer is found, too.
+        for candidate in ["right", "pack"] {
+            let output = raypencil(folder, &["check", "pack", candidate]);
+            assert_trouble(&output, &["its answer to camera", "is not the referee's"]);
+        }
     }
     assert!(forged > 5, "{forged}");
-    // Who copies the changed answer is found by the sample, or by --verify.
-    let output = raypencil(folder, &["check", "pack", "pack", "--verify"]);
-    assert_trouble(&output, &["its answer to", "is not the referee's"]);
+}
+
+/// What a manifest says beside the answers follows from the scene, too, and each answer stands twice.
+#[test]
+fn a_manifest_that_says_what_is_not_so_is_refused() {
+    let whole = packed();
+    let folder = whole.path();
+    let pack = folder.join("pack");
+    let manifest = fs::read(pack.join("manifest.json")).unwrap();
+    let refused = |change: &dyn Fn(&mut serde_json::Value), words: &[&str]| {
+        with_manifest(&pack, change);
+        assert_trouble(&raypencil(folder, &["check", "pack", "right"]), words);
+        fs::write(pack.join("manifest.json"), &manifest).unwrap();
+    };
+    refused(
+        &|of| of["clauses"][0]["rays"] = 77.into(),
+        &["manifest.json: clauses[0]", "decides 77 rays; expected"],
+    );
+    refused(&|of| of["clauses"] = serde_json::json!([]), &["clauses[0]", "no count; expected"]);
+    refused(&|of| _ = of["clauses"].as_array_mut().unwrap().pop(), &["manifest.json: clauses: "]);
+    refused(&|of| of["clauses"][1]["clause"] = "always-right".into(), &["clauses: ", "always-right"]);
+    refused(
+        &|of| of["fluxModel"] = "eq1".into(),
+        &["fluxModel: Eq1; expected Radiometric, as the scene has"],
+    );
+    let no_maps = |of: &mut serde_json::Value| {
+        of["files"].as_array_mut().unwrap().retain(|file| file["path"] != "camera.exr");
+    };
+    refused(&no_maps, &["of camera in an EXR file that manifest.json lists; expected"]);
+    // It calls itself what is published.
+    let is_hard = |of: &mut serde_json::Value| {
+        of["scene"]["name"] = "hard".into();
+        of["version"] = "1.0.0".into();
+    };
+    refused(
+        &is_hard,
+        &["says that it is hard 1.0.0, and has the digest", "as it is published, or another version"],
+    );
+    // A map without one of its channels, and one that says something else than the arrays.
+    let path = pack.join("camera.exr");
+    let original = fs::read(&path).unwrap();
+    let changed = |change: &dyn Fn(&mut raypencil::io::ExrMap), words: &[&str]| {
+        let mut exr = read_exr(&path, &Limits::default()).unwrap();
+        change(&mut exr);
+        write_exr(&path, &exr).unwrap();
+        seal(&pack);
+        assert_trouble(&raypencil(folder, &["check", "pack", "right"]), words);
+        fs::write(&path, &original).unwrap();
+    };
+    changed(&|exr| _ = exr.channels.remove("range.T"), &["no range of camera in an EXR file"]);
+    let farther = |exr: &mut raypencil::io::ExrMap| {
+        let cells = exr.channels["range.T"].as_f32().unwrap().cells().iter().map(|cell| 2.0 * cell).collect();
+        exr.insert("range.T", Raster::F32(Image::from_cells(12, 8, cells)));
+    };
+    changed(&farther, &["channel \"camera/range.T\", cell", "to within half an ulp, as in"]);
+    seal(&pack);
+    let shown = screen(folder, &["check", "pack", "right"], 0);
+    assert!(shown.contains("(By a pack that is not published: sha256 "), "{shown}");
 }
 
 /// The numbers of a file of one channel, with its columns and rows.
@@ -92,8 +159,6 @@ fn no_right_image_is_wrong_by_a_changed_pencil() {
     let whole = packed();
     let folder = whole.path();
     let pack = folder.join("pack");
-    without_map(&pack, "camera.exr");
-    without_map(&pack, "beam-0.exr");
     let (of_pencils, of_pixels) = (pack.join("beam-0/flux.V.npy"), pack.join("camera/flux.beam0.npy"));
     fs::create_dir_all(folder.join("image/camera")).unwrap();
     fs::copy(&of_pixels, folder.join("image/camera/flux.beam0.npy")).unwrap();
@@ -107,9 +172,8 @@ fn no_right_image_is_wrong_by_a_changed_pencil() {
         let (mut pencils, mut pixels) = (pencils.clone(), pixels.clone());
         pixels[at_j[pencil] as usize * width as usize + at_i[pencil] as usize] += pencils[pencil];
         pencils[pencil] *= 2.0;
-        write_npy(&of_pencils, &[&Image::from_cells(columns, rows, pencils)]).unwrap();
-        write_npy(&of_pixels, &[&Image::from_cells(width, height, pixels)]).unwrap();
-        seal(&pack);
+        write_channel(&pack, "beam-0", "flux.V", (columns, rows), pencils);
+        write_channel(&pack, "camera", "flux.beam0", (width, height), pixels);
         let output = raypencil(folder, &["check", "pack", "image"]);
         assert_trouble(&output, &["its answer to beam-0", "is not the referee's"]);
         forged += 1;
@@ -121,14 +185,16 @@ fn no_right_image_is_wrong_by_a_changed_pencil() {
 fn a_check_says_what_it_verified() {
     let whole = packed();
     let said = screen(whole.path(), &["check", "pack", "right"], 0);
-    let sampled = "of 128 answers are the referee's (all: --verify), and so is each by which a ray is wrong; 2 arrays of \
-                   rays are those of its scene.";
-    assert!(said.contains(sampled), "{said}");
-    let said = screen(whole.path(), &["check", "pack", "right", "--verify"], 0);
-    assert!(said.contains("): all 128 of 128 answers are the referee's, and so"), "{said}");
+    let all = "): all 128 of 128 answers are the referee's, and so is each by which a ray is wrong; 2 arrays of rays are \
+               those of its scene.";
+    assert!(said.contains(all), "{said}");
+    assert_eq!(screen(whole.path(), &["check", "pack", "right", "--verify"], 0), said);
     let json = screen(whole.path(), &["check", "pack", "right", "--verify", "--json"], 0);
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
-    assert_eq!(json["verified"], serde_json::json!({ "answers": 128, "of": 128, "ray_files": 2 }));
+    assert_eq!(
+        json["verified"],
+        serde_json::json!({ "answers": 128, "of": 128, "seed": null, "ray_files": 2 })
+    );
     // Which pack it is: not a published one.
     let (_, sha256) = file_sha256_hex(&whole.path().join("pack/manifest.json")).unwrap();
     let expected = serde_json::json!({ "name": "scene", "sha256": sha256, "version": null, "licence": null, "published": false });

@@ -1,0 +1,62 @@
+//! What a manifest says of its scene beside the answers: all of it follows from the scene.
+
+use raypencil_files::Fault;
+use raypencil_naive::Clause;
+use raypencil_scene::{Progress, Scene, Silent};
+
+use crate::clauses::{can_count_clauses, clause_rays, needed_clauses, tests};
+use crate::manifest::{Manifest, PackKind};
+use crate::verification::Verification;
+
+/// Most tests of a ray against a face for which clauses are counted again unasked. Tuned: some 2 s on two cores.
+const MAX_TESTS_UNASKED: f64 = 1e9;
+
+/// Refuses what a manifest says of its scene if that is not so. Names of sensors were compared when it was read.
+pub(crate) fn check_facts(manifest: &Manifest, scene: &Scene) -> Result<(), Fault> {
+    if manifest.flux_model != scene.flux_model() {
+        let [found, expected] = [manifest.flux_model, scene.flux_model()].map(|model| format!("{model:?}"));
+        return Err(Fault::new("fluxModel", found, format!("{expected}, as the scene has")));
+    }
+    let sizes: Vec<(u32, u32)> = scene.sensors().filter_map(|sensor| scene.size(sensor)).collect();
+    let stated: Vec<(u32, u32)> = manifest.sensors.iter().map(|one| (one.columns, one.rows)).collect();
+    if stated != sizes {
+        return Err(Fault::new(
+            "sensors",
+            format!("{stated:?}"),
+            format!("columns and rows {sizes:?}, as the scene has"),
+        ));
+    }
+    // Which clauses there are follows from the scene; how often, from counting.
+    let needed: Vec<&str> = needed_clauses(scene.flux_model()).map(Clause::key).collect();
+    let stated: Vec<&str> = manifest.clauses.iter().map(|one| one.clause.as_str()).collect();
+    if !stated.is_empty() && stated != needed {
+        return Err(Fault::new("clauses", stated.join(", "), needed.join(", ")));
+    }
+    Ok(())
+}
+
+/// Refuses counts of clauses that are not those of the scene. They are counted again where that takes some seconds, or if all of the
+/// pack is to be verified.
+pub(crate) fn check_clauses(
+    manifest: &Manifest,
+    scene: &Scene,
+    share: Verification,
+    progress: &dyn Progress,
+) -> Result<(), Fault> {
+    let most = if share == Verification::All { f64::INFINITY } else { MAX_TESTS_UNASKED };
+    if manifest.kind == PackKind::Questions || !can_count_clauses(scene) || tests(scene) > most {
+        return Ok(());
+    }
+    progress.stage("counting the rays of each clause again");
+    let counted = clause_rays(scene, &Silent);
+    let wrong = (0..counted.len().max(manifest.clauses.len())).find(|&at| {
+        let (own, stated) = (counted.get(at), manifest.clauses.get(at));
+        own.map(|own| (own.clause.key(), own.rays))
+            != stated.map(|stated| (stated.clause.as_str(), stated.rays))
+    });
+    let Some(at) = wrong else { return Ok(()) };
+    let words = |clause: &str, rays: u64| format!("{clause} decides {rays} rays");
+    let stated = manifest.clauses.get(at).map_or("no count".into(), |one| words(&one.clause, one.rays));
+    let expected = counted.get(at).map_or("none".into(), |one| words(one.clause.key(), one.rays));
+    Err(Fault::new(format!("clauses[{at}]"), stated, expected))
+}
