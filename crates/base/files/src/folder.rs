@@ -32,6 +32,12 @@ pub enum FolderError {
         /// Path of the folder.
         path: PathBuf,
     },
+    /// What bears the name of a run's lock is none.
+    #[error("{}: it is no file, and no run has made it; expected none, or an empty file: remove it", path.display())]
+    NoLock {
+        /// Path of the lock.
+        path: PathBuf,
+    },
     /// The folder is a reference pack, which a run would mix with its files.
     #[error("{}: it is a pack (it has {file}); expected another folder", path.display())]
     IsPack {
@@ -39,6 +45,14 @@ pub enum FolderError {
         path: PathBuf,
         /// The file that makes it one.
         file: &'static str,
+    },
+    /// The folder has results of something else.
+    #[error("{}: it has results of {of}; expected another folder, or --force to replace them", path.display())]
+    IsOfOther {
+        /// Path of the folder.
+        path: PathBuf,
+        /// What the results are of.
+        of: String,
     },
     /// One of the files could not be written; the message names it.
     #[error(transparent)]

@@ -24,6 +24,9 @@ const LOCK_NAME: &str = ".raypencil-lock";
 /// Name of the list of files that a run has made.
 const MADE_NAME: &str = ".raypencil-made";
 
+/// Begin of its second line, which says what the files are of.
+const SUBJECT: &str = "# results of ";
+
 /// Maximum size of that list, bytes.
 const MAX_MADE_BYTES: u64 = 1 << 26;
 
@@ -76,6 +79,8 @@ pub struct OutputFolder {
     before: BTreeMap<PathBuf, Stamp>,
     /// Files that an earlier run has made, with their digests.
     earlier: Vec<(PathBuf, String)>,
+    /// What the results are of.
+    subject: Option<String>,
 }
 
 impl OutputFolder {
@@ -88,6 +93,38 @@ impl OutputFolder {
             return Err(FolderError::IsPack { path: folder.to_path_buf(), file: name });
         }
         Self::begin_any(folder)
+    }
+
+    /// The same for results of a subject, such as a scene: a folder with results of another one is refused, unless it is `replaced`.
+    ///
+    /// ```
+    /// use raypencil_files::{OutputFolder, write_atomically};
+    ///
+    /// let parent = tempfile::tempdir()?;
+    /// let folder = parent.path().join("out");
+    /// let run = |subject: &str, replaced: bool| -> Result<(), Box<dyn std::error::Error>> {
+    ///     let output = OutputFolder::begin_of(&folder, subject, replaced)?;
+    ///     write_atomically(folder.join("map.exr"), |file| writeln!(file, "{subject}"))?;
+    ///     Ok(output.finish()?)
+    /// };
+    /// run("pyramids", false)?;
+    /// run("pyramids", false)?;
+    /// let error = run("facets", false).unwrap_err().to_string();
+    /// assert!(error.contains("results of pyramids"), "{error}");
+    /// run("facets", true)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`OutputFolder::begin`].
+    pub fn begin_of(folder: &Path, subject: &str, replaced: bool) -> Result<Self, FolderError> {
+        let subject = one_line(subject);
+        if let Some(of) = subject_of(folder).filter(|of| *of != subject && !replaced) {
+            return Err(FolderError::IsOfOther { path: folder.to_path_buf(), of });
+        }
+        let mut output = Self::begin(folder)?;
+        output.subject = Some(subject);
+        Ok(output)
     }
 
     /// The same for a folder that may be a pack. One that is dropped without [`OutputFolder::finish`] leaves no list.
@@ -109,14 +146,21 @@ impl OutputFolder {
         let lock = lock(folder)?;
         let journal = Journal::begin(folder).map_err(cannot)?;
         let (before, earlier) = (BTreeMap::new(), Vec::new());
-        let mut output = Self { folder: folder.to_path_buf(), made, lock, journal, before, earlier };
+        let subject = None;
+        let mut output = Self { folder: folder.to_path_buf(), made, lock, journal, before, earlier, subject };
         // No run that could be writing them is left.
         output.before = files_below(folder, &mut remove_part);
         output.earlier = made_earlier(folder);
         Ok(output)
     }
 
-    /// Removes the files of an earlier run that this one has not made again, and lists its own.
+    /// The files that this run has written so far, by their paths in the folder, with their digests.
+    pub fn written(&self) -> BTreeMap<PathBuf, String> {
+        self.journal.written()
+    }
+
+    /// Removes the files of an earlier run that this one has not made again, and lists its own. A run that wrote nothing leaves
+    /// no list.
     ///
     /// # Errors
     /// A file that cannot be removed, read or written.
@@ -134,8 +178,16 @@ impl OutputFolder {
                 inner.map(std::fs::remove_dir);
             }
         }
+        let written = self.written();
+        if written.is_empty() {
+            let _ = std::fs::remove_file(self.folder.join(MADE_NAME));
+            return Ok(());
+        }
         let mut list = heading(&self.folder) + "\n";
-        for (name, sha256) in self.journal.written().iter().filter(|(name, _)| now.contains_key(*name)) {
+        if let Some(subject) = &self.subject {
+            list += &format!("{SUBJECT}{subject}\n");
+        }
+        for (name, sha256) in written.iter().filter(|(name, _)| now.contains_key(*name)) {
             let Some(text) = name.to_str().filter(|text| !text.contains('\n')) else { continue };
             list += &format!("{sha256}  {text}\n");
         }
@@ -184,9 +236,9 @@ fn lock(folder: &Path) -> Result<Option<File>, FolderError> {
     let path = folder.join(LOCK_NAME);
     // The file may vanish between its opening and its locking, when another run ends: then it is opened again.
     for attempt in 0..100 {
-        // What is no file is not opened: a pipe would wait for its other end.
+        // What is no file is not opened: a pipe would wait for its other end. No run has made it, so none ends with it.
         if std::fs::symlink_metadata(&path).is_ok_and(|found| !found.is_file()) {
-            break;
+            return Err(FolderError::NoLock { path });
         }
         let file = File::options()
             .create(true)
@@ -278,16 +330,35 @@ fn heading(folder: &Path) -> String {
 /// The list of an earlier run in this folder: paths with digests. A path that leads out of the folder is none of the files found
 /// below it, so nothing is done with it.
 fn made_earlier(folder: &Path) -> Vec<(PathBuf, String)> {
-    let Ok(text) = bytes::read_file(&folder.join(MADE_NAME), MAX_MADE_BYTES) else { return Vec::new() };
-    let text = String::from_utf8_lossy(&text);
-    if text.lines().next() != Some(heading(folder).as_str()) {
-        return Vec::new();
-    }
+    let Some(text) = own_list(folder) else { return Vec::new() };
     let line = |line: &str| {
         let (sha256, name) = line.split_once("  ")?;
         Some((PathBuf::from(name), sha256.to_string()))
     };
-    text.lines().filter_map(line).collect()
+    text.lines().filter(|line| !line.starts_with('#')).filter_map(line).collect()
+}
+
+/// The text of the list in this folder, if it was made here.
+fn own_list(folder: &Path) -> Option<String> {
+    let text = bytes::read_file(&folder.join(MADE_NAME), MAX_MADE_BYTES).ok()?;
+    let text = String::from_utf8_lossy(&text).into_owned();
+    (text.lines().next() == Some(heading(folder).as_str())).then_some(text)
+}
+
+/// What the results in a folder are of, if a run has left some and said so, and one of its files is still as it was made.
+pub fn subject_of(folder: &Path) -> Option<String> {
+    let text = own_list(folder)?;
+    let subject = text.lines().nth(1)?.strip_prefix(SUBJECT)?;
+    let is_there = |(name, sha256): &(PathBuf, String)| {
+        let is_inside = name.components().all(|part| matches!(part, std::path::Component::Normal(_)));
+        is_inside && file_sha256_hex(&folder.join(name)).is_ok_and(|(_, found)| found == *sha256)
+    };
+    made_earlier(folder).iter().any(is_there).then(|| subject.to_string())
+}
+
+/// A text without line ends, for the list.
+fn one_line(text: &str) -> String {
+    text.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect()
 }
 
 #[cfg(test)]

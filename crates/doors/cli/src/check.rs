@@ -2,15 +2,18 @@
 
 use raypencil::harness::{check_any_pack, pack_form};
 use raypencil::io::OutputFolder;
-use raypencil::judge::JudgeShare;
-use raypencil::pack::{Declarations, PackForm};
+use raypencil::pack::{Declarations, PackForm, Verification};
 
 use crate::args::Check;
 use crate::console::{Spinner, say};
+use crate::overwriting::output_folder;
 use crate::{Outcome, Trouble, memory};
 
 pub(crate) fn check(command: &Check, json: bool) -> Result<Outcome, Trouble> {
-    let output = command.output.as_deref().map(OutputFolder::begin).transpose()?;
+    let output = match &command.output {
+        Some(folder) => Some(output_folder(folder, &command.pack.to_string_lossy())?),
+        None => None,
+    };
     let outcome = checked(command, json)?;
     output.map_or(Ok(()), OutputFolder::finish)?;
     Ok(outcome)
@@ -25,7 +28,8 @@ fn checked(command: &Check, json: bool) -> Result<Outcome, Trouble> {
         ignores_faces: command.no_faces,
         ..command.declared.declarations()
     };
-    let share = if command.verify { JudgeShare::All } else { JudgeShare::Sample };
+    let drawn = Verification::Drawn { seed: command.seed };
+    let share = if command.verify { Verification::All } else { drawn };
     if pack_form(&command.pack) == PackForm::Sensors {
         memory::ask_check(&command.pack)?;
     }

@@ -11,6 +11,7 @@ use raypencil::pack::CheckError;
 
 use crate::args::Diff;
 use crate::console::{Spinner, is_terminal, say};
+use crate::overwriting::output_folder;
 use crate::{Outcome, Trouble};
 
 /// Length of a line on a terminal, characters.
@@ -30,7 +31,10 @@ pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
             )));
         }
     }
-    let output = command.output.as_deref().map(OutputFolder::begin).transpose()?;
+    let output = match &command.output {
+        Some(folder) => Some(output_folder(folder, &command.a.to_string_lossy())?),
+        None => None,
+    };
     let [a, b] = read_sides([&command.a, &command.b], &command.declared.declarations(), &spinner)?;
     let thresholds = Thresholds {
         fail: command.fail,

@@ -8,11 +8,12 @@ use raypencil::Progress;
 use raypencil::drive::{
     self, DriveExtras, DriveJob, DriveProgress, RecordContents, StripeFile, drive_document, write_drive,
 };
-use raypencil::io::{DriveSetup, OutputFolder, WaypointFrame, load};
+use raypencil::io::{DriveSetup, WaypointFrame, load};
 
 use crate::args::{self, DRIVE_WITH, typed_renderers};
 use crate::console::{Spinner, progress_bar, say};
 use crate::memory::Rates;
+use crate::overwriting::output_folder;
 use crate::subject::contenders;
 use crate::{Outcome, Registry, Trouble, memory};
 
@@ -100,7 +101,7 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
         Some(folder) => folder.clone(),
         None => Path::new("out").join(format!("{}-drive", job.name)),
     };
-    let output = OutputFolder::begin(&folder)?;
+    let output = output_folder(&folder, &command.scene.scene)?;
     let stripes = command.stripes.as_deref().map(StripeFile::read).transpose()?;
     let mut contents = RecordContents::default();
     for word in &command.record {

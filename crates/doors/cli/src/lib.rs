@@ -42,6 +42,7 @@ mod man;
 mod memory;
 mod minimise;
 mod outcome;
+mod overwriting;
 mod pack;
 mod pages;
 mod parsers;
@@ -93,9 +94,10 @@ pub fn run_with(arguments: impl IntoIterator<Item = OsString>, registry: &Regist
             return code_after_writing(if asked { 0 } else { 2 });
         }
     };
-    let Everywhere { quiet, json, color, max_memory, .. } = arguments.everywhere;
+    let Everywhere { quiet, json, color, max_memory, force, .. } = arguments.everywhere;
     console::begin(quiet, json, color);
     memory::begin(max_memory);
+    overwriting::begin(force);
     let outcome = run(arguments, registry);
     console::end();
     let code = match outcome {

@@ -8,6 +8,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use bytesize::ByteSize;
+use raypencil::io::limit_memory;
 use raypencil::pack::{FileRole, Manifest};
 use raypencil::report::counted;
 use raypencil::{Scene, SensorId};
@@ -53,6 +54,10 @@ static GIVEN: AtomicU64 = AtomicU64::new(0);
 /// Sets the limit. Without one it is the memory of the machine.
 pub(crate) fn begin(max: Option<ByteSize>) {
     GIVEN.store(max.map_or(0, |max| max.as_u64()), Ordering::Relaxed);
+    // What files claim is asked where they are read.
+    if let Some(bytes) = max.map(|max| max.as_u64()).or_else(of_machine) {
+        limit_memory(bytes);
+    }
 }
 
 /// The memory of the machine, or of the container if that has less, bytes; `None` where the system does not say.

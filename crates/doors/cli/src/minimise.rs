@@ -4,7 +4,6 @@ use raypencil::Progress as _;
 use raypencil::harness::{
     Reproducer, first_interesting_ray, is_interesting_in_class, typed_contenders, write_reproducer,
 };
-use raypencil::io::OutputFolder;
 use raypencil::judge::{Class, JudgeShare};
 use raypencil::minimise::{MINIMISE_BUDGET, minimise as search};
 use serde_json::json;
@@ -12,6 +11,7 @@ use serde_json::json;
 use crate::args::{Minimise, typed_renderers};
 use crate::console::{Spinner, say};
 use crate::memory::Rates;
+use crate::overwriting::output_folder;
 use crate::parsers::class_name;
 use crate::subject::{contenders, subject};
 use crate::{Outcome, Registry, Trouble, memory};
@@ -41,7 +41,7 @@ pub(crate) fn minimise(command: &Minimise, json: bool, registry: &Registry) -> R
     let [of_a, of_b] = [a, b].map(|contender| contender.renderer.name());
     let what = format!("{of_a} and {of_b} {}", difference(class));
 
-    let output = OutputFolder::begin(&command.output)?;
+    let output = output_folder(&command.output, &command.scene.scene)?;
     spinner.stage("searching for the first such ray");
     let found = first_interesting_ray([a, b], &subject.scene, class, JudgeShare::All).and_then(|first| {
         let is_interesting = is_interesting_in_class([a, b], class);

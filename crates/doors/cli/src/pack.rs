@@ -18,6 +18,7 @@ use raypencil::{NamedRaySet, Progress as _, Sides};
 use crate::args::Pack;
 use crate::console::{Spinner, say, warn};
 use crate::memory::Rates;
+use crate::overwriting::{PackOf, ask_pack};
 use crate::subject::subject;
 use crate::{Outcome, Trouble, memory};
 
@@ -27,6 +28,7 @@ pub(crate) fn pack(command: &Pack, json: bool) -> Result<Outcome, Trouble> {
     // No list of files is left in a pack: its manifest is one.
     let _locked = OutputFolder::begin_any(&command.output)?;
     if command.input {
+        ask_pack(&command.output, PackOf::Input)?;
         write_input(&command.output)?;
         say(&match json {
             true => format!("{:#}\n", serde_json::json!({ "pack": folder })),
@@ -51,6 +53,7 @@ pub(crate) fn pack(command: &Pack, json: bool) -> Result<Outcome, Trouble> {
             (if is_plain { subject } else { benched(subject)? }, warned)
         }
     };
+    ask_pack(&command.output, PackOf::Scene(&subject.name, label.version.as_deref()))?;
     let (manifest, sets) =
         write_pack_with_ray_sets(&subject, command.blind, &label, &command.output, &spinner)?;
     drop(spinner);
@@ -115,6 +118,10 @@ fn pack_rays(command: &Pack, rays: &Path, json: bool) -> Result<Outcome, Trouble
         ..CastSource::default()
     };
     warn(&file_warnings(&source.facts));
+    for one in &packed {
+        let folder = one.name.as_ref().map_or(command.output.clone(), |name| command.output.join(name));
+        ask_pack(&folder, PackOf::Mesh(file))?;
+    }
     // One after the other.
     let most = packed.iter().map(|one| one.array.rays.len()).max().unwrap_or(0);
     memory::ask_cast(most, mesh.triangles.faces().len())?;

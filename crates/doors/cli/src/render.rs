@@ -1,7 +1,6 @@
 //! `raypencil render`: writes the maps of one renderer.
 
 use raypencil::harness::{write_maps_as, write_ray_sets};
-use raypencil::io::OutputFolder;
 use raypencil::report::counted;
 use raypencil::survey::{SensorHits, warnings};
 use raypencil::{Progress, Request, Sampling};
@@ -9,6 +8,7 @@ use raypencil::{Progress, Request, Sampling};
 use crate::args::Render;
 use crate::console::{Spinner, say, warn};
 use crate::memory::Rates;
+use crate::overwriting::output_folder;
 use crate::subject::{contenders, subject};
 use crate::{Outcome, Registry, Trouble, memory};
 
@@ -19,7 +19,7 @@ pub(crate) fn render(command: &Render, json: bool, registry: &Registry) -> Resul
     let renderer = &contenders[0].renderer;
     let subject = subject(&command.scene, "", &spinner)?;
     memory::ask(Rates::RENDER, &subject.scene)?;
-    let folder = OutputFolder::begin(&command.output)?;
+    let folder = output_folder(&command.output, &command.scene.scene)?;
     spinner.stage(&format!("{}: rendering", renderer.name()));
     let sampling = command.jitter.map_or(Sampling::Centres, |seed| Sampling::Jittered { seed });
     let output = renderer.render(&subject.scene, &Request { sampling, ..Request::EVERYTHING });

@@ -11,6 +11,7 @@ use raypencil::sweep::{
 
 use crate::args::{self, DEFAULT_WITH, DRIVE_WITH, SweepCommand, SwitchArguments};
 use crate::console::{progress_bar, say};
+use crate::overwriting::ask_sweep;
 use crate::subject::contenders;
 use crate::{Outcome, Registry, Trouble};
 
@@ -74,6 +75,7 @@ fn run(command: &args::SweepRun, json: bool, registry: &Registry) -> Result<Outc
     sweep.check_values()?;
     let part = Part { index: command.shard.index, count: command.shard.count };
     let bar = Bar::new(part.runs(sweep.runs()).count() as u64);
+    ask_sweep(&command.output, &command.scene)?;
     remove_abandoned(&command.output, MIN_ABANDONED_AGE);
     run_part(&sweep, part, &contenders, &command.output, &bar)?;
     drop(bar);

@@ -5,11 +5,10 @@ use std::path::{Path, PathBuf};
 use raypencil::Progress as _;
 use raypencil::harness::{one_screen, validate as run, whole_screen, write_validation};
 
-use raypencil::io::OutputFolder;
-
 use crate::args::{Validate, typed_renderers};
 use crate::console::{Spinner, is_terminal, say};
 use crate::memory::Rates;
+use crate::overwriting::output_folder;
 use crate::subject::{candidates, contenders, subject};
 use crate::{Outcome, Registry, Trouble, memory};
 
@@ -23,7 +22,7 @@ pub(crate) fn validate(command: &Validate, json: bool, registry: &Registry) -> R
         Some(folder) => folder.clone(),
         None => Path::new("out").join(&subject.name),
     };
-    let output = OutputFolder::begin(&folder)?;
+    let output = output_folder(&folder, &command.scene.scene)?;
     // Candidates first, so that an error in their files is reported before the rendering.
     spinner.stage("reading candidates");
     let candidates = candidates(&command.candidates, &command.declared, &subject.scene)?;

@@ -132,8 +132,16 @@ fn pipes_and_links_are_neither_waited_for_nor_followed() {
     std::os::unix::fs::symlink("/", folder.join("root")).unwrap();
     run(folder, &["a"]);
     assert_eq!(names(folder), ["a"]);
+    let refused = || {
+        let error = OutputFolder::begin(folder).unwrap_err().to_string();
+        assert!(error.contains(LOCK_NAME) && error.contains("remove it"), "{error}");
+        std::fs::remove_file(folder.join(LOCK_NAME)).unwrap();
+    };
     pipe(LOCK_NAME);
-    assert!(OutputFolder::begin(folder).is_err());
+    refused();
+    std::os::unix::fs::symlink("nowhere", folder.join(LOCK_NAME)).unwrap();
+    refused();
+    run(folder, &["a"]);
 }
 
 #[test]
@@ -229,6 +237,36 @@ fn a_run_below_is_left_alone_and_one_above_is_not_disturbed() {
     assert!(!below.join("deeper").exists());
     drop(lock);
     drop(OutputFolder::begin(&below).unwrap());
+}
+
+#[test]
+fn results_of_something_else_are_not_replaced_unasked() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    let run_of = |subject: &str, replaced: bool, name: &str| {
+        let output = OutputFolder::begin_of(folder, subject, replaced)?;
+        write_atomically(folder.join(name), |file| file.write_all(name.as_bytes())).unwrap();
+        output.finish()
+    };
+    run_of("/a  b/pyramids\n.toml", false, "a").unwrap();
+    assert_eq!(subject_of(folder).as_deref(), Some("/a  b/pyramids .toml"));
+    // The same again, and a run that does not say what it is of, as before.
+    run_of("/a  b/pyramids\n.toml", false, "b").unwrap();
+    assert_eq!(names(folder), ["b"]);
+    let error = run_of("facets", false, "c").unwrap_err().to_string();
+    assert!(
+        error.contains("has results of /a  b/pyramids .toml; expected another folder, or --force"),
+        "{error}"
+    );
+    assert_eq!(names(folder), ["b"]);
+    run_of("facets", true, "c").unwrap();
+    assert_eq!(names(folder), ["c"]);
+    // Results that are gone, or that were changed, are nobody's.
+    std::fs::write(folder.join("c"), "mine").unwrap();
+    run_of("pyramids", false, "d").unwrap();
+    assert_eq!(names(folder), ["c", "d"]);
+    run(folder, &["e"]);
+    assert_eq!((names(folder), subject_of(folder)), (vec!["c".to_string(), "e".to_string()], None));
 }
 
 #[test]

@@ -37,6 +37,10 @@ pub(crate) struct Everywhere {
     )]
     pub(crate) threads: Option<u16>,
 
+    /// Replace what an output folder holds of something else: results of another scene, mesh or pack, or another pack.
+    #[arg(long, global = true, help_heading = "Options of every command")]
+    pub(crate) force: bool,
+
     /// Refuse work that would take more memory, such as 2GB or 512MiB; default: the memory of the machine. Asked before the work
     /// begins, by render, validate, minimise, pack, check, probe, drive and cast.
     #[arg(

@@ -20,6 +20,7 @@ use serde_json::{Value, json};
 use crate::args::Cast;
 use crate::console::{Spinner, say, warn};
 use crate::file_frame::file_frame;
+use crate::overwriting::output_folder;
 use crate::{Outcome, Trouble, memory};
 use compared::Compared;
 use ray_command::ray_command;
@@ -56,7 +57,10 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
     };
     memory::ask_cast(count, mesh.faces().len())?;
     let folder = command.output.as_deref();
-    let output = folder.map(OutputFolder::begin).transpose()?;
+    let output = match folder {
+        Some(folder) => Some(output_folder(folder, &command.mesh.to_string_lossy())?),
+        None => None,
+    };
     let results = match &rays {
         Rays::Array(array) => {
             let sides = if command.fronts_only { Sides::Fronts } else { Sides::Both };

@@ -98,3 +98,48 @@ fn an_input_pack_tests_a_loader() {
     let rays = pack("hard").to_string_lossy().into_owned();
     assert_trouble(&raypencil(folder.path(), &["check", &rays, "mine"]), &["mine"]);
 }
+
+/// What an output folder has of something else is named, and goes only by `--force`.
+#[test]
+fn results_of_something_else_are_not_replaced_unasked() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
+    let small = "version = 1\ncamera = { width_px = 4, height_px = 4 }\nbeam = [{ columns = 4, rows = 1 }]\n";
+    write("a.toml", small);
+    write("b.toml", small);
+    write("g.obj", "v -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n");
+    write("rays.csv", "0,0,1,0,0,-1\n");
+    let run = |line: &str| raypencil(folder, &line.split(' ').collect::<Vec<_>>());
+    let refused = |line: &str, of: &str| {
+        assert_trouble(
+            &run(line),
+            &["it has results of ", of, "expected another folder, or --force to replace them"],
+        );
+        assert_passes(&run(&format!("{line} --force")));
+    };
+    // Of each command: the same again, and with other settings; then another subject.
+    assert_passes(&run("render a.toml --with tracer -o r"));
+    assert_passes(&run("render ./a.toml --with tracer -o r --set camera.width_px=5"));
+    refused("render b.toml --with tracer -o r", "a.toml");
+    refused("cast g.obj --ray 0,0,1,0,0,-1 -o r", "b.toml");
+    refused("validate a.toml -o r", "g.obj");
+    refused("pack a.toml --no-bench -o r", "a.toml");
+    // Packs: the same again, another version, another scene, another kind.
+    assert_passes(&run("pack a.toml --no-bench --pack-version 1.0.0 -o p"));
+    assert_passes(&run("pack a.toml --no-bench --pack-version 1.0.0 -o p"));
+    refused("pack a.toml --no-bench --pack-version 1.0.1 -o p", "a pack of a, version 1.0.0");
+    refused("pack b.toml --no-bench -o p", "a pack of a, version 1.0.1");
+    assert_passes(&run("pack g.obj --rays rays.csv -o q"));
+    assert_passes(&run("pack g.obj --rays rays.csv -o q"));
+    assert_trouble(&run("pack a.toml --no-bench -o q"), &["a pack of rays on g.obj"]);
+    assert_trouble(&run("pack --input -o p"), &["a pack of b"]);
+    // A check is of its pack, a sweep of its scene.
+    assert_passes(&run("check p p -o c"));
+    assert_passes(&run("check p p -o c"));
+    assert_trouble(&run("check q q -o c"), &["it has results of ", "/p;"]);
+    assert_passes(&run("sweep a.toml --do render -o s"));
+    assert_passes(&run("sweep a.toml --do render --set camera.width_px=5,6 -o s"));
+    refused("sweep b.toml --do render -o s", "a sweep of a.toml");
+    assert_trouble(&run("sweep a.toml --do render -o c"), &["it has results of ", "/p;"]);
+}

@@ -6,7 +6,9 @@
 //! conditions: `region` finds the least displacement at which all hold. Several nearest faces stay together only if
 //! they lie in one plane; otherwise the least displacement is 0.
 
-use raypencil_scene::{Side, Sides};
+use std::collections::BTreeSet;
+
+use raypencil_scene::{FaceId, Side, Sides};
 
 use super::super::query_ray::QueryRay;
 use super::super::triangle::Triangle;
@@ -65,12 +67,14 @@ impl ExactCast<'_> {
         });
         let first_range = frame.ranges()[0];
         let is_between = |range: &[f64; 2]| range[0] <= farthest && range[1] >= first_range;
+        // Thousands of faces may lie in one place.
+        let own: BTreeSet<FaceId> = nearest.iter().map(|one| one.face.id).collect();
         let mut nearby = Nearby::new(&self.bvh);
         while nearby.size() < lo {
             let faces =
                 nearby.open(frame, |_, span| super::frame::least_size(span) < lo && is_between(&span[2]));
             for face in faces {
-                if nearest.iter().any(|one| one.face.id == face.id) {
+                if own.contains(&face.id) {
                     continue;
                 }
                 let Some(side) = seen(face).filter(|side| sides.include(*side)) else { continue };

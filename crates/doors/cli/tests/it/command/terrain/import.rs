@@ -168,7 +168,8 @@ fn a_mesh_becomes_a_terrain() {
     assert_eq!(report["file_states"], serde_json::json!({ "unit": null, "up": null }));
     // The GLB is the terrain: the same as the mesh under these words, to the bit.
     let digest = |arguments: &[&str]| {
-        let arguments = [&["validate"], arguments, &["-o", "out", "--json", "--fan", "5"]].concat();
+        let arguments =
+            [&["validate"], arguments, &["-o", "out", "--json", "--fan", "5", "--force"]].concat();
         let report: Value = serde_json::from_str(&screen(path, &arguments, 0)).expect("JSON");
         report["scene"]["sha256"].as_str().map(String::from).expect("a digest")
     };
