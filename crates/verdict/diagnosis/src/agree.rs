@@ -2,20 +2,48 @@
 
 use glam::DVec3;
 use raypencil_files::Storage;
-use raypencil_judge::Quantity;
+use raypencil_judge::{GroundTruth, Quantity, Recorded};
 use raypencil_scene::{HitQuantity, Place};
 
 use crate::channel::{Channel, Value};
 use crate::correction::Case;
+use crate::numbers::middle;
 
 /// Relative difference of values that count as equal while corrections are tried. Tuned: single precision leaves less
 /// on nearly all rays, and neighbouring rays differ by more.
 pub(crate) const TRIAL_TOLERANCE: f64 = 1e-5;
 
+/// Part of the median error of the wrong values that may be left: what is left is not what was wrong.
+const LEFT_OF_ERROR: f64 = 1.0 / 64.0;
+
+/// Relative errors that a few operations of doubles leave.
+const LEAST_TOLERANCE: f64 = 1e-13;
+
+/// Wrong values from which the tolerance is found, at most.
+const MAX_VALUES: usize = 4096;
+
 /// The relative tolerance for a channel's storage: half precision rounds by up to 2^-11.
 pub(crate) fn tolerance(case: Case<'_>, channel: Channel) -> f64 {
     let storage = case.recorded.storage.get(&(channel.sensor, channel.item));
-    if storage == Some(&Storage::F16) { 1.0 / 1024.0 } else { TRIAL_TOLERANCE }
+    if storage == Some(&Storage::F16) { 1.0 / 1024.0 } else { case.tolerance }
+}
+
+/// The tolerance for trials: a small part of the errors that are to be explained, where they are small themselves.
+pub(crate) fn tolerance_of(truth: &GroundTruth<'_>, recorded: &Recorded, wrong: &[(Channel, Place)]) -> f64 {
+    let step = wrong.len().div_ceil(MAX_VALUES).max(1);
+    let error = |(channel, place): &(Channel, Place)| {
+        let [stated, exact] = [&recorded.answers, truth.answers()].map(|answers| channel.at(answers, *place));
+        match (stated, exact) {
+            (Value::Number(stated), Value::Number(exact)) => Some(((stated - exact) / exact).abs()),
+            (Value::Vector(stated), Value::Vector(exact)) => {
+                Some((stated - exact).length() / exact.length())
+            }
+            _ => None,
+        }
+    };
+    let mut errors: Vec<f64> = wrong.iter().step_by(step).filter_map(error).collect();
+    let median = middle(&mut errors, 1).map_or(1.0, |(median, _)| median);
+    (median * LEFT_OF_ERROR).clamp(LEAST_TOLERANCE, TRIAL_TOLERANCE)
 }
 
 /// The absolute tolerance for a channel that is stored in steps: half a step is rounded away.

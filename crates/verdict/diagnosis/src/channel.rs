@@ -31,9 +31,10 @@ pub(crate) struct Channel {
     pub(crate) item: Item,
 }
 
-/// The channels that a recording has, in their order.
-pub(crate) fn channels_of(recorded: &Recorded) -> Vec<Channel> {
-    recorded.storage.keys().map(|&(sensor, item)| Channel { sensor, item }).collect()
+/// The channels that a recording has of some sensors, in their order.
+pub(crate) fn channels_of(recorded: &Recorded, sensors: &[SensorId]) -> Vec<Channel> {
+    let all = recorded.storage.keys().map(|&(sensor, item)| Channel { sensor, item });
+    all.filter(|channel| sensors.contains(&channel.sensor)).collect()
 }
 
 /// The quantity of a hit that is a number or a vector.

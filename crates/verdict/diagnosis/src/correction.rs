@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::channel::{Channel, Value, hit_quantity};
-use crate::mistake::{Cosine, Mistake};
+use crate::channel::{Channel, Value, channels_of, hit_quantity};
+use crate::forward::foretold;
+use crate::mistake::{Cosine, Length, Mistake};
 use glam::DVec3;
 use raypencil_judge::{GroundTruth, Item, Quantity, Recorded};
 use raypencil_scene::{FaceId, HitQuantity, Image, Pixel, Place, SensorId};
@@ -34,11 +35,21 @@ impl From<Mistake> for Correction {
     }
 }
 
-/// The truth and the recording that it is held to.
+/// The truth, the recording that is held to it, and the sensors that a reason is looked for.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Case<'t> {
     pub(crate) truth: &'t GroundTruth<'t>,
     pub(crate) recorded: &'t Recorded,
+    pub(crate) sensors: &'t [SensorId],
+    /// Relative difference of values that count as equal while corrections are tried.
+    pub(crate) tolerance: f64,
+}
+
+impl Case<'_> {
+    /// The channels that the recording has of these sensors.
+    pub(crate) fn channels(self) -> Vec<Channel> {
+        channels_of(self.recorded, self.sensors)
+    }
 }
 
 impl Correction {
@@ -72,6 +83,15 @@ impl Correction {
             Mistake::CosinesExchanged(_) => is_cosine && channel.sensor != SensorId::Camera,
             Mistake::PixelRowsFromBottom | Mistake::PixelsExchanged => quantity == Quantity::Pixel,
             Mistake::OtherFluxModel | Mistake::AttenuationOn(_) | Mistake::FluxFactor(_) => is_flux,
+            Mistake::Affine { of: Length::All, offset: 0.0, .. } => {
+                matches!(hit, Some(H::Range | H::Depth | H::Point)) || quantity == Quantity::CameraDepth
+            }
+            Mistake::Affine { of, .. } | Mistake::FromPlane(of) | Mistake::Rounded { of, .. } => match of {
+                Length::Range => hit == Some(H::Range),
+                Length::Depth => hit == Some(H::Depth),
+                Length::All => matches!(hit, Some(H::Range | H::Depth)),
+            },
+            Mistake::Cut { .. } => true,
             _ => false,
         }
     }
@@ -81,8 +101,8 @@ impl Correction {
         let kind = |mistake: &Mistake| match mistake {
             Mistake::MissWritten(_) | Mistake::MissAtMaximumRange => 1,
             Mistake::FacesShifted(_) | Mistake::FacesReordered => 2,
-            Mistake::DepthForRange | Mistake::ParameterForRange => 3,
-            Mistake::RangeForDepth | Mistake::ParameterForDepth => 4,
+            Mistake::DepthForRange | Mistake::ParameterForRange | Mistake::FromPlane(Length::Range) => 3,
+            Mistake::RangeForDepth | Mistake::ParameterForDepth | Mistake::FromPlane(Length::Depth) => 4,
             Mistake::Unit(_) => 5,
             Mistake::AxesYUp
             | Mistake::AxesYUpInverse
@@ -92,9 +112,24 @@ impl Correction {
             Mistake::CosinesExchanged(_) => 7,
             Mistake::OtherFluxModel | Mistake::AttenuationOn(_) => 8,
             Mistake::CosinesNegated | Mistake::AngleForCosine(_) => 9,
+            Mistake::Shifted { .. } => 10,
+            Mistake::Cut { .. } => 11,
             _ => 0,
         };
+        // A number that is fitted to lengths in another unit is that unit.
+        let is_length = |mistake: &Mistake| matches!(mistake, Mistake::Unit(_) | Mistake::Affine { .. });
         kind(&self.mistake) != 0 && kind(&self.mistake) == kind(&other.mistake)
+            || is_length(&self.mistake) && is_length(&other.mistake)
+    }
+
+    /// Whether it says something of all lengths: then it must be true of each.
+    pub(crate) fn is_of_all_lengths(&self) -> bool {
+        matches!(
+            self.mistake,
+            Mistake::Affine { of: Length::All, .. }
+                | Mistake::FromPlane(Length::All)
+                | Mistake::Rounded { of: Length::All, .. }
+        )
     }
 
     /// The cell in which the ray of `place` stands; `None` if no cell has it.
@@ -129,6 +164,9 @@ impl Correction {
     ) -> Value {
         if let Mistake::MissWritten(_) | Mistake::MissAtMaximumRange = self.mistake {
             return if self.is_miss(case, source) { Value::Nothing } else { value };
+        }
+        if let Mistake::Rounded { .. } | Mistake::Cut { .. } = self.mistake {
+            return foretold(self.mistake, case, channel, place, value);
         }
         match value {
             Value::Nothing | Value::Flag(_) => value,
@@ -170,6 +208,9 @@ impl Correction {
             Mistake::RangeForDepth => number * axis / length(),
             Mistake::ParameterForDepth => number * axis,
             Mistake::Unit(unit) => unit.to_metres(number),
+            Mistake::Affine { factor, offset, .. } => (number - offset) / factor,
+            Mistake::FromPlane(_) if channel.item.quantity == Quantity::Range => number + length(),
+            Mistake::FromPlane(_) => number + axis,
             Mistake::CosinesNegated => -number,
             Mistake::AngleForCosine(unit) => unit.cosine(number),
             Mistake::CosinesExchanged(held) => {
@@ -218,6 +259,7 @@ impl Correction {
         };
         match self.mistake {
             Mistake::Unit(unit) => DVec3::from_array(stated.map(|one| unit.to_metres(one))),
+            Mistake::Affine { factor, .. } => vector / factor,
             Mistake::AxesYUp => turned([0, 2, 1], [1, -1, 1]),
             Mistake::AxesYUpInverse => turned([0, 2, 1], [1, 1, -1]),
             Mistake::Axes { from, sign } => turned(from, sign),

@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::agree::is_near;
-use crate::channel::{Channel, Value, channels_of};
+use crate::channel::{Channel, Value};
 use crate::correction::{Case, Correction, FluxFactors, Table, corrected};
-use crate::mistake::{AngleUnit, Cosine, Leg, LengthUnit, Mistake};
+use crate::lengths::lengths;
+use crate::mistake::{AngleUnit, Cosine, Leg, Length, LengthUnit, Mistake};
+use crate::numbers::{middle, plainest};
 use raypencil_judge::Quantity;
 use raypencil_scene::{FluxModel, HitQuantity, Image, Place, SensorId};
 
@@ -41,6 +43,9 @@ pub(crate) fn fixed(case: Case<'_>) -> Vec<Correction> {
         Mistake::ParameterForRange,
         Mistake::RangeForDepth,
         Mistake::ParameterForDepth,
+        Mistake::FromPlane(Length::All),
+        Mistake::FromPlane(Length::Range),
+        Mistake::FromPlane(Length::Depth),
         Mistake::Unit(LengthUnit::Millimetres),
         Mistake::Unit(LengthUnit::Centimetres),
         Mistake::Unit(LengthUnit::Kilometres),
@@ -75,14 +80,22 @@ pub(crate) fn fixed(case: Case<'_>) -> Vec<Correction> {
             corrections.push(Correction { mistake: Mistake::AttenuationOn(leg), table });
         }
     }
-    let channels = channels_of(case.recorded);
-    corrections.retain(|one| channels.iter().any(|channel| one.touches(*channel)));
+    let channels = case.channels();
+    corrections.retain(|one| {
+        let touched = channels.iter().filter(|channel| one.touches(**channel));
+        // Of all lengths is said only what is true of several.
+        let mut quantities: Vec<Quantity> = touched.map(|channel| channel.item.quantity).collect();
+        quantities.sort_unstable();
+        quantities.dedup();
+        quantities.len() > usize::from(one.is_of_all_lengths())
+    });
     corrections
 }
 
 /// Corrections whose numbers are found from the recording, after `base`.
 pub(crate) fn fitted(case: Case<'_>, places: &[Place], base: Option<&Correction>) -> Vec<Correction> {
-    [axes(case, places, base), faces(case, base), factor(case, places, base)].into_iter().flatten().collect()
+    let turns = [axes(case, places, base), faces(case, base), factor(case, places, base)];
+    turns.into_iter().flatten().chain(lengths(case, places, base)).collect()
 }
 
 /// All rays of a sensor, or every so many of them.
@@ -101,7 +114,7 @@ fn rays(case: Case<'_>, sensor: SensorId) -> impl Iterator<Item = Place> + use<>
 /// The length of many cells that truly hold different ones, for each sensor: it may mean "no hit".
 fn constants(case: Case<'_>) -> Vec<Mistake> {
     let mut found: Vec<Mistake> = Vec::new();
-    for map in &case.recorded.answers.maps {
+    for map in case.recorded.answers.maps.iter().filter(|map| case.sensors.contains(&map.sensor)) {
         let Some(raster) = HitQuantity::ALL.into_iter().find_map(|one| map.raster(one)) else { continue };
         let mut cells: BTreeMap<u64, usize> = BTreeMap::new();
         for place in rays(case, map.sensor) {
@@ -132,7 +145,7 @@ fn constants(case: Case<'_>) -> Vec<Mistake> {
 
 /// A change of axes for points and normals.
 fn axes(case: Case<'_>, places: &[Place], base: Option<&Correction>) -> Option<Correction> {
-    let channels: Vec<Channel> = channels_of(case.recorded)
+    let channels: Vec<Channel> = case.channels()
         .into_iter()
         .filter(|channel| matches!(channel.item.quantity, Quantity::Point | Quantity::Normal))
         .collect();
@@ -172,7 +185,7 @@ fn axes(case: Case<'_>, places: &[Place], base: Option<&Correction>) -> Option<C
 fn faces(case: Case<'_>, base: Option<&Correction>) -> Option<Correction> {
     let corrections: Vec<&Correction> = base.into_iter().collect();
     let mut counts: BTreeMap<u32, BTreeMap<u32, usize>> = BTreeMap::new();
-    for channel in channels_of(case.recorded) {
+    for channel in case.channels() {
         if channel.item.quantity != Quantity::Face {
             continue;
         }
@@ -207,7 +220,7 @@ fn factor(case: Case<'_>, places: &[Place], base: Option<&Correction>) -> Option
     let corrections: Vec<&Correction> = base.into_iter().collect();
     for quantity in [Quantity::PencilFlux, Quantity::PixelFlux] {
         let mut ratios = Vec::new();
-        for channel in channels_of(case.recorded) {
+        for channel in case.channels() {
             if channel.item.quantity != quantity || channel.item.is_other_model {
                 continue;
             }
@@ -222,14 +235,11 @@ fn factor(case: Case<'_>, places: &[Place], base: Option<&Correction>) -> Option
                 }
             }
         }
-        if ratios.len() < MIN_VALUES_OF_FACTOR {
-            continue;
-        }
-        ratios.sort_by(f64::total_cmp);
-        let at = |quarter: usize| ratios[(ratios.len() - 1) * quarter / 4];
-        let median = at(2);
-        let is_one = (at(3) - at(1)).abs() <= MAX_SPREAD_OF_FACTOR * median;
-        return (is_one && median != 1.0).then(|| Mistake::FluxFactor(median).into());
+        let Some((median, spread)) = middle(&mut ratios, MIN_VALUES_OF_FACTOR) else { continue };
+        let is_one = spread <= MAX_SPREAD_OF_FACTOR * median && (median - 1.0).abs() > spread;
+        // The plainest number within what the ratios differ by.
+        let plain = plainest(median, spread + 4.0 * f64::EPSILON * median);
+        return is_one.then(|| Mistake::FluxFactor(plain).into());
     }
     None
 }

@@ -1,11 +1,14 @@
 //! A plan before the judge: the corrected recording, and how many of its rays are right.
 
+use std::collections::BTreeSet;
+
 use rayon::prelude::*;
 
 use crate::agree::absorbed;
 use crate::channel::{Channel, Value};
 use crate::correction::{Case, Correction, corrected};
-use crate::sample::{Key, WrongRays, key};
+use crate::sample::{Key, WrongRays, key, place, some_of};
+use crate::tally::Tally;
 use crate::trial::Plan;
 use raypencil_files::Storage;
 use raypencil_judge::{Quantity, Recorded, check_rays};
@@ -13,31 +16,59 @@ use raypencil_scene::{Place, Precision, Scene, SensorId, Silent};
 
 /// Rays of one sensor that the judge is asked about for each diagnosis, at most; of more, whole rows are left out. A
 /// ray costs microseconds, so that a diagnosis takes seconds.
-const MAX_JUDGED_RAYS: u64 = 1 << 16;
+const MAX_JUDGED_RAYS: u64 = 1 << 14;
 
-/// The rays that the judge is asked about: every so many rows of each sensor.
+/// Wrong rays that the judge is asked about beside these rows, at most.
+const MAX_JUDGED_WRONG_RAYS: usize = 1 << 13;
+
+/// The rays that the judge is asked about: every so many rows of each sensor, and wrong rays.
 #[derive(Debug)]
 pub(crate) struct Asked {
     camera: u32,
     beams: Vec<u32>,
+    /// Wrong rays that are asked about.
+    wrong: BTreeSet<Key>,
+    /// Whether the camera's flux is judged: all pencils are asked for then.
+    needs_beams: bool,
+    sensors: Vec<SensorId>,
 }
 
 impl Asked {
-    pub(crate) fn of(scene: &Scene) -> Self {
+    pub(crate) fn of(case: Case<'_>, wrong: &WrongRays) -> Self {
+        let scene: &Scene = case.truth.scene();
         let step = |sensor: SensorId| {
             let (width, height) = scene.size(sensor).unwrap_or((1, 1));
             (u64::from(width) * u64::from(height)).div_ceil(MAX_JUDGED_RAYS).max(1) as u32
         };
         let beams = (0..scene.beams().len()).map(|beam| step(SensorId::Beam(beam))).collect();
-        Self { camera: step(SensorId::Camera), beams }
+        let needs_beams = case.channels().iter().any(|channel| channel.item.quantity == Quantity::PixelFlux);
+        let mut asked = Self {
+            camera: step(SensorId::Camera),
+            beams,
+            wrong: BTreeSet::new(),
+            needs_beams,
+            sensors: case.sensors.to_vec(),
+        };
+        let of_rows = wrong.all.iter().filter(|ray| asked.is_of_rows(**ray)).copied();
+        let more = some_of(&wrong.all, MAX_JUDGED_WRONG_RAYS).into_iter().map(key);
+        asked.wrong = of_rows.chain(more).collect();
+        asked
     }
 
-    pub(crate) fn is_asked(&self, (sensor, j, _): Key) -> bool {
+    fn is_of_rows(&self, (sensor, j, _): Key) -> bool {
         let step = match sensor {
             SensorId::Camera => self.camera,
             SensorId::Beam(beam) => self.beams[beam],
         };
         j % step == 0
+    }
+
+    fn is_asked(&self, ray: Key) -> bool {
+        if self.sensors.contains(&ray.0) {
+            self.is_of_rows(ray) || self.wrong.contains(&ray)
+        } else {
+            self.needs_beams && self.is_of_rows(ray)
+        }
     }
 
     /// Whether all pencils of a beam are asked for: without them, the flux of its image cannot be judged.
@@ -46,17 +77,9 @@ impl Asked {
     }
 }
 
-/// A plan that was judged.
-#[derive(Debug)]
-pub(crate) struct Judged {
-    /// Rays that are not wrong after it.
-    pub(crate) right: u64,
-    /// Rays that are wrong after it.
-    pub(crate) wrong: u64,
-}
-
-/// Judges a recording after the corrections of a plan.
-pub(crate) fn judge(case: Case<'_>, plan: &Plan, asked: &Asked, precision: Precision) -> Judged {
+/// Judges a recording after the corrections of a plan. Rays that no cell holds then are left out: whether they are
+/// right, nobody can tell.
+pub(crate) fn judge(case: Case<'_>, plan: &Plan, asked: &Asked, wrong: &WrongRays, precision: Precision) -> Tally {
     let mut recorded = corrected_recording(case, plan);
     recorded.precision = precision;
     for (beam, light) in recorded.answers.light.iter_mut().enumerate() {
@@ -65,9 +88,36 @@ pub(crate) fn judge(case: Case<'_>, plan: &Plan, asked: &Asked, precision: Preci
             light.other_image = None;
         }
     }
+    // Pencils of beams that are not looked at have their true light: the camera's flux is judged by itself.
+    let scene = case.truth.scene();
+    let others = (0..scene.beams().len()).filter(|beam| !case.sensors.contains(&SensorId::Beam(*beam)));
+    for beam in others {
+        let exact = case.truth.answers();
+        recorded.answers.maps[beam + 1] = exact.maps[beam + 1].clone();
+        recorded.answers.light[beam].returns = exact.light[beam].returns.clone();
+        recorded.answers.light[beam].other_flux = exact.light[beam].other_flux.clone();
+    }
     let check = check_rays(case.truth, &recorded, &|place| asked.is_asked(key(place)), &Silent);
-    let wrong = WrongRays::of(&check).all.len() as u64;
-    Judged { right: check.compared().saturating_sub(wrong), wrong }
+    let after = WrongRays::of(&check, case.sensors);
+    let is_held = |ray: &&Key| is_held(case, plan, place(**ray));
+    let before: BTreeSet<Key> = asked.wrong.iter().filter(is_held).copied().collect();
+    let explained = before.iter().filter(|ray| !after.all.contains(ray)).count() as u64;
+    let broken = after.all.iter().filter(|ray| !wrong.all.contains(ray)).filter(is_held).count() as u64;
+    let right = after.compared.saturating_sub(asked.wrong.len() as u64);
+    // Hardly any ray is left to tell: that explains nothing.
+    if 2 * before.len() < asked.wrong.len() {
+        return Tally { explained: 0, wrong: asked.wrong.len() as u64, broken, right };
+    }
+    Tally { explained, wrong: before.len() as u64, broken, right }
+}
+
+/// Whether some cell holds each value of a ray after the corrections of a plan.
+fn is_held(case: Case<'_>, plan: &Plan, place: Place) -> bool {
+    let of_sensor = plan.applied.iter().filter(|(channel, _)| channel.sensor == place.sensor);
+    of_sensor.into_iter().all(|(_, subset)| {
+        let all = plan.corrections.iter().enumerate().filter(|(index, _)| subset >> index & 1 == 1);
+        all.into_iter().try_fold(place, |place, (_, one)| one.source(case, place)).is_some()
+    })
 }
 
 fn corrected_recording(case: Case<'_>, plan: &Plan) -> Recorded {

@@ -1,11 +1,13 @@
-//! Why a recording is wrong nearly everywhere: the mistake that explains it, or the two.
+//! Why rays of a recording are wrong: the mistake that explains it, or the two, sensor by sensor.
 //!
 //! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
 //!
 //! A renderer that breaks one convention (rows reversed, depth for range, millimetres) is wrong on all rays, and its
 //! list of wrong rays does not say why. This crate undoes each known mistake on the recording's own numbers, singly and
-//! then in pairs, and asks the judge again. Mistakes of the rays themselves (hits on backs) cannot be undone; there the
-//! rays are cast by the wrong rules, and the answers must be those of the recording.
+//! then in pairs, and asks the judge again. Mistakes of the rays themselves (hits on backs, another focal length) cannot
+//! be undone; there the rays are cast otherwise, and the answers must be those of the recording. Nor can lengths that
+//! were rounded or lost; what the mistake makes of the exact ones is compared. `docs/guide/reasons.md` has the rules by
+//! which a reason is told.
 //!
 //! ```
 //! # use std::sync::Arc;
@@ -37,8 +39,10 @@
 //!
 //! // 45 rays hit the wall, and the one along the axis is right: its range is its depth.
 //! let diagnosis = diagnose(&truth, &recorded, &found).unwrap();
-//! assert_eq!(diagnosis.mistakes, [Mistake::DepthForRange]);
-//! assert_eq!((diagnosis.agree, diagnosis.tried), (81, 81));
+//! let reason = &diagnosis.reasons[0];
+//! assert_eq!(reason.mistakes, [Mistake::DepthForRange]);
+//! assert_eq!((reason.explained, reason.wrong), (44, 44));
+//! assert_eq!((reason.broken, reason.right), (0, 37));
 //! # Ok::<(), raypencil_scene::SceneError>(())
 //! ```
 //!
@@ -47,29 +51,46 @@
 //! ```text
 //! mistake        the mistakes: name, page of the documentation
 //! words          the mistakes in words
+//! numbers        the plainest number that says the same
 //! channel        channels of a recording, cell by cell
 //! correction     what undoes a mistake
+//! forward        what a mistake that nothing undoes makes of an exact value
 //! agree          values that are near enough to be tried further
 //! sample         the rays on which mistakes are tried
+//! tally          what a reason explains and breaks, and when that is enough
 //! trial          what a correction leaves off, and which channels it helps
+//! lengths        factor, offset and quantum of lengths
+//! cuts           lost lines and lost lengths, by an interval search
 //! fit            the corrections to try, and numbers found from the recording
 //! judged         a corrected recording before the judge
-//! cast, rays     rays cast by wrong rules
+//! rules          rules and numbers of rays that may differ
+//! cast           rays cast by other rules
+//! calibrate      numbers of a sensor, by least squares
+//! rays           what a renderer with other rules explains
+//! search         the search for one sensor, or for several together
 //! diagnosis      the result
-//! diagnose       the search
+//! diagnose       each sensor, then together
 //! ```
 
 mod agree;
+mod calibrate;
 mod cast;
 mod channel;
 mod correction;
+mod cuts;
 mod diagnose;
 mod diagnosis;
 mod fit;
+mod forward;
 mod judged;
+mod lengths;
 mod mistake;
+mod numbers;
 mod rays;
+mod rules;
 mod sample;
+mod search;
+mod tally;
 mod trial;
 mod words;
 
@@ -79,5 +100,5 @@ mod words;
 struct Readme;
 
 pub use diagnose::diagnose;
-pub use diagnosis::Diagnosis;
-pub use mistake::{AngleUnit, Cosine, Leg, LengthUnit, Mistake};
+pub use diagnosis::{Diagnosis, Reason};
+pub use mistake::{AngleUnit, Cosine, CutBy, Held, Leg, Length, LengthUnit, Mistake, Turn};

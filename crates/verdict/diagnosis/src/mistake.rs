@@ -86,7 +86,55 @@ pub enum Leg {
     Neither,
 }
 
-/// A convention that a recording may have broken everywhere.
+/// Lengths of a hit that a mistake may change.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Length {
+    /// `range.T`.
+    Range,
+    /// `depth.Z`.
+    Depth,
+    /// Every length that the recording has, and points where a factor changes them too.
+    All,
+}
+
+/// What a recording is cut by: the number of a ray that decides whether its answer is lost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CutBy {
+    /// The true range, metres.
+    Range,
+    /// The true depth, metres.
+    Depth,
+    /// The row of the cell.
+    Row,
+    /// The column of the cell.
+    Column,
+}
+
+/// What stands in place of the answers beyond a cut.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Held {
+    /// "No hit".
+    NoHit,
+    /// One number.
+    Constant(f64),
+    /// The answer of the cell beside the cut: a line is there twice.
+    Neighbour,
+    /// Something else: all that is known is that these lines are wrong, and no other.
+    Anything,
+}
+
+/// An axis about which a sensor is turned.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Turn {
+    /// Up and down: positive looks further down.
+    Pitch,
+    /// Left and right: positive looks further to the right.
+    Yaw,
+    /// About the normal axis: positive is clockwise, as the sensor sees it.
+    Roll,
+}
+
+/// A convention that a recording may have broken, or a number of a sensor that it may have had otherwise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Mistake {
@@ -165,18 +213,96 @@ pub enum Mistake {
     NearPlaneIgnored,
     /// Rays hit faces beyond the maximum range.
     MaximumRangeIgnored,
-    /// Rays go through a corner of their cell. In cells from the middle: -1/2 is left or above.
+    /// The maximum range limits the depth.
+    MaximumRangeAsDepth,
+    /// A hit needs t of at least this number, which is more than 1.
+    NearLimit(f64),
+    /// A ray that meets an edge of a face exactly passes it.
+    EdgesOpen,
+    /// Rays go through another point of their cell, as through its corner. In cells from the middle: -1/2 is left or
+    /// above.
     CornerRays {
         /// Columns from the middle of the cell.
         columns: f64,
         /// Rows from the middle of the cell.
         rows: f64,
     },
+    /// A length is `factor` times the true one plus `offset` metres.
+    Affine {
+        /// Which length.
+        of: Length,
+        /// The factor.
+        factor: f64,
+        /// The number that is added, metres.
+        offset: f64,
+    },
+    /// A length is counted from the sensor's plane, t = 1.
+    FromPlane(Length),
+    /// A length is rounded to multiples of a quantum.
+    Rounded {
+        /// Which length.
+        of: Length,
+        /// The quantum, metres.
+        quantum: f64,
+        /// Whether it is rounded down; else to the nearest multiple.
+        down: bool,
+    },
+    /// Answers beyond a number are lost.
+    Cut {
+        /// By what.
+        by: CutBy,
+        /// Whether those above the number are lost; else those below.
+        is_above: bool,
+        /// The number: metres, or the first or last line that is lost.
+        at: f64,
+        /// Number of lines that are lost; 0 if it is not cut by lines.
+        lines: u32,
+        /// What stands in their place.
+        held: Held,
+    },
+    /// The camera's principal point is another one.
+    PrincipalPoint {
+        /// The one of the recording's rays, pixels.
+        stated: [f64; 2],
+        /// The scene's.
+        truth: [f64; 2],
+    },
+    /// The camera's focal length is another one.
+    FocalLength {
+        /// The one of the recording's rays, metres.
+        stated: f64,
+        /// The scene's.
+        truth: f64,
+    },
+    /// The beam's fan has another angle.
+    Fan {
+        /// The one of the recording's rays, degrees.
+        stated: f64,
+        /// The scene's.
+        truth: f64,
+    },
+    /// The sensor is turned.
+    Turned {
+        /// About which of its axes.
+        about: Turn,
+        /// By how much too far, degrees.
+        degrees: f64,
+    },
+    /// The sensor stands elsewhere: this vector of the scene frame too far, metres.
+    Moved([f64; 3]),
+    /// The sensor has another pose.
+    Posed {
+        /// Turns about its x, y and z axes (right, down, forward), as one rotation vector, degrees.
+        degrees: [f64; 3],
+        /// This vector of the scene frame too far, metres.
+        metres: [f64; 3],
+    },
 }
 
 const FILES: &str = "docs/formats/files.md";
 const GUIDE: &str = "docs/guide/for-implementers.md";
 const LIGHT: &str = "docs/theory/radiometry.md";
+const REASONS: &str = "docs/guide/reasons.md";
 
 impl Mistake {
     /// A name for programs.
@@ -218,7 +344,29 @@ impl Mistake {
             Self::BacksHit => "backs_hit",
             Self::NearPlaneIgnored => "near_plane_ignored",
             Self::MaximumRangeIgnored => "maximum_range_ignored",
-            Self::CornerRays { .. } => "corner_rays",
+            Self::MaximumRangeAsDepth => "maximum_range_as_depth",
+            Self::NearLimit(_) => "near_limit",
+            Self::EdgesOpen => "edges_open",
+            Self::CornerRays { columns, rows } => {
+                if columns.abs() == 0.5 && rows.abs() == 0.5 { "corner_rays" } else { "ray_offset" }
+            }
+            Self::Affine { factor: 1.0, .. } => "offset",
+            Self::Affine { offset: 0.0, .. } => "factor",
+            Self::Affine { .. } => "factor_and_offset",
+            Self::FromPlane(_) => "from_plane",
+            Self::Rounded { .. } => "rounded",
+            Self::Cut { by: CutBy::Row | CutBy::Column, held: Held::Neighbour, .. } => "line_doubled",
+            Self::Cut { by: CutBy::Row | CutBy::Column, held: Held::Anything, .. } => "lines_wrong",
+            Self::Cut { by: CutBy::Row | CutBy::Column, .. } => "lines_lost",
+            Self::Cut { .. } => "cut_off",
+            Self::PrincipalPoint { .. } => "principal_point",
+            Self::FocalLength { .. } => "focal_length",
+            Self::Fan { .. } => "fan",
+            Self::Turned { about: Turn::Pitch, .. } => "pitch",
+            Self::Turned { about: Turn::Yaw, .. } => "yaw",
+            Self::Turned { about: Turn::Roll, .. } => "roll",
+            Self::Moved(_) => "position",
+            Self::Posed { .. } => "pose",
         }
     }
 
@@ -250,7 +398,16 @@ impl Mistake {
             Self::BacksHit | Self::NearPlaneIgnored | Self::MaximumRangeIgnored => {
                 (GUIDE, "The contract for rays")
             }
+            Self::MaximumRangeAsDepth | Self::NearLimit(_) | Self::EdgesOpen => (GUIDE, "The contract for rays"),
             Self::CornerRays { .. } => (FILES, "Cells"),
+            Self::Affine { .. } | Self::FromPlane(_) | Self::Rounded { .. } => (REASONS, "Lengths"),
+            Self::Cut { .. } => (REASONS, "Cuts and borders"),
+            Self::PrincipalPoint { .. }
+            | Self::FocalLength { .. }
+            | Self::Fan { .. }
+            | Self::Turned { .. }
+            | Self::Moved(_)
+            | Self::Posed { .. } => (REASONS, "Numbers of a sensor"),
         }
     }
 }

@@ -1,41 +1,60 @@
 //! Mistakes of the rays themselves: a renderer with one of them is cast, and its answers are compared.
 
+use std::sync::OnceLock;
+
 use rayon::prelude::*;
 
 use crate::agree::{is_near, tolerance};
-use crate::cast::{CastHit, Rules, cast, pairs_of_wrong_rules, wrong_rules};
-use crate::channel::{Channel, Value, channels_of};
+use crate::calibrate::calibrations;
+use crate::cast::{Cast, CastHit, cast};
+use crate::channel::{Channel, Value};
 use crate::correction::{Case, Correction, corrected};
-use crate::diagnosis::Diagnosis;
+use crate::cuts::{hits, split};
 use crate::mistake::Mistake;
-use crate::sample::{WrongRays, some_of, spread_over};
+use crate::numbers::plainest_between;
+use crate::rules::{Rules, near_limit, pairs_of_wrong_rules, wrong_rules};
+use crate::sample::{WrongRays, key, some_of, spread_over};
+use crate::tally::{MIN_WRONG_RAYS, Tally};
 use raypencil_judge::Quantity;
-use raypencil_scene::Place;
+use raypencil_scene::{Place, SensorId};
 
 /// Tests of a ray and a face for one set of rules, at most, beyond the first rays. A test takes nanoseconds.
 const MAX_RAY_FACE_TESTS: u64 = 1 << 24;
 
 /// Rays that are cast, at least and at most: half of them wrong ones.
-const CAST_RAYS: std::ops::RangeInclusive<u64> = 128..=2048;
+const CAST_RAYS: std::ops::RangeInclusive<u64> = 128..=4096;
 
-/// Share of the wrong rays, and of all rays, that a renderer with the mistake must give. Tuned: a ray near an edge may
-/// go either way.
-const MIN_SHARE_OF_WRONG: f64 = 0.95;
-const MIN_SHARE_OF_ALL: f64 = 0.98;
+/// Wrong rays that are cast first: rules that do not explain nearly all of them are given up.
+const FIRST_RAYS: usize = 32;
+
+/// Share of the first wrong rays that rules must explain to be tried on all. Tuned: of 32 rays three may be edges.
+const MIN_SHARE_OF_FIRST: f64 = 0.9;
 
 /// Share of the wrong rays that may be near the truth as well. Tuned: nearly all of them must tell the two apart.
 const MAX_SHARE_NEAR_TRUTH: f64 = 0.1;
+
+type Render = Vec<Cast>;
+
+/// A reason of rays, and what it explains.
+#[derive(Debug, Clone)]
+pub(crate) struct ByRays {
+    pub(crate) mistakes: Vec<Mistake>,
+    pub(crate) rules: Rules,
+    pub(crate) tally: Tally,
+}
 
 /// Rays cast by the rules of each mistake.
 #[derive(Debug)]
 pub(crate) struct CastTrial<'t> {
     case: Case<'t>,
     channels: Vec<Channel>,
-    /// The wrong rays, and then rays of all.
-    places: Vec<Place>,
-    /// Number of the wrong rays at the beginning.
-    wrong: usize,
-    renders: Vec<(Mistake, Vec<Option<CastHit>>)>,
+    wrong: Vec<Place>,
+    right: Vec<Place>,
+    /// Wrong and right rays in all, of which these are some.
+    all: [u64; 2],
+    rules: Vec<(Mistake, Rules)>,
+    /// The first wrong rays by each rule, once they are asked for.
+    first: Vec<OnceLock<Render>>,
 }
 
 /// The quantities that are compared: a renderer that hits backs may turn normals and cosines or not.
@@ -56,96 +75,169 @@ fn value_of(channel: Channel, hit: Option<CastHit>) -> Value {
 }
 
 impl<'t> CastTrial<'t> {
-    pub(crate) fn new(case: Case<'t>, wrong: &WrongRays) -> Self {
+    pub(crate) fn new(case: Case<'t>, wrong_rays: &WrongRays) -> Self {
         let scene = case.truth.scene();
         let faces = scene.mesh().faces().len().max(1) as u64;
         let rays = (MAX_RAY_FACE_TESTS / faces).clamp(*CAST_RAYS.start(), *CAST_RAYS.end());
-        let channels: Vec<Channel> = channels_of(case.recorded).into_iter().filter(is_compared).collect();
+        let channels: Vec<Channel> = case.channels().into_iter().filter(is_compared).collect();
         let of_channels = |place: &Place| channels.iter().any(|channel| channel.sensor == place.sensor);
-        let mut places = some_of(&wrong.of_hits, rays as usize / 2);
-        places.retain(of_channels);
-        let wrong = places.len();
-        places.extend(spread_over(scene, rays / 2).into_iter().filter(of_channels));
-        let mut trial = Self { case, channels, places, wrong, renders: Vec::new() };
-        if wrong > 0 {
-            let renders = wrong_rules().into_iter().map(|(mistake, rules)| (mistake, trial.render(rules)));
-            trial.renders = renders.collect();
+        let mut wrong = some_of(&wrong_rays.of_hits, rays as usize / 2);
+        wrong.retain(of_channels);
+        // The first of them are spread over all.
+        let step = wrong.len().div_ceil(FIRST_RAYS).max(1);
+        let order = (0..step).flat_map(|start| wrong.iter().skip(start).step_by(step));
+        let wrong: Vec<Place> = order.copied().collect();
+        let mut right = spread_over(scene, case.sensors, rays / 2);
+        right.retain(|place| of_channels(place) && !wrong_rays.all.contains(&key(*place)));
+        let all = [wrong_rays.of_hits.len() as u64, wrong_rays.right()];
+        let mut rules = Vec::new();
+        if wrong.len() as u64 >= MIN_WRONG_RAYS {
+            rules = wrong_rules();
+            rules.extend(near_limit_of(case, wrong_rays));
+            rules.extend(calibrations(case, &wrong));
         }
-        trial
+        let first = rules.iter().map(|_| OnceLock::new()).collect();
+        Self { case, channels, wrong, right, all, rules, first }
     }
 
-    /// The rays by some rules.
-    fn render(&self, rules: Rules) -> Vec<Option<CastHit>> {
-        self.places.par_iter().map(|place| cast(self.case.truth.scene(), *place, rules)).collect()
+    fn render(&self, places: &[Place], rules: Rules) -> Render {
+        places.par_iter().map(|place| cast(self.case.truth.scene(), *place, rules)).collect()
     }
 
-    /// The best explanation by rays of two mistakes.
-    pub(crate) fn explain_by_two(&self) -> Option<Diagnosis> {
-        let rules = if self.wrong == 0 { Vec::new() } else { pairs_of_wrong_rules() };
-        let found = rules.into_iter().filter_map(|(mistakes, rules)| {
-            let agree = self.agreeing(&self.render(rules), None)?;
-            Some(Diagnosis { mistakes: mistakes.to_vec(), agree, tried: self.places.len() as u64 })
-        });
-        // Among equals the first.
-        found.reduce(|best, other| if other.agree > best.agree { other } else { best })
+    fn first_places(&self) -> &[Place] {
+        &self.wrong[..self.wrong.len().min(FIRST_RAYS)]
     }
 
-    /// The best explanation by rays of one mistake, after at most one correction.
-    pub(crate) fn explain(&self, correction: Option<&Correction>) -> Option<Diagnosis> {
-        let found = self.renders.iter().filter_map(|(mistake, render)| {
-            let agree = self.agreeing(render, correction)?;
-            let mistakes = correction.map(|one| one.mistake).into_iter().chain([*mistake]).collect();
-            Some(Diagnosis { mistakes, agree, tried: self.places.len() as u64 })
-        });
-        // Among equals the first.
-        found.reduce(|best, other| if other.agree > best.agree { other } else { best })
-    }
-
-    /// Rays on which all compared channels agree with a render; `None` if it explains too few.
-    fn agreeing(&self, render: &[Option<CastHit>], correction: Option<&Correction>) -> Option<u64> {
-        let case = self.case;
-        let mut near_render = vec![true; self.places.len()];
-        let mut near_truth = vec![true; self.places.len()];
-        let mut is_used = correction.is_none();
-        for channel in &self.channels {
-            let near = |corrections: &[&Correction]| -> Vec<(usize, bool, bool)> {
-                let own = self.places.iter().enumerate().filter(|(_, place)| place.sensor == channel.sensor);
-                own.map(|(index, place)| {
-                    let Some(value) = corrected(case, *channel, *place, corrections) else {
-                        return (index, true, false);
-                    };
-                    let exact = channel.at(case.truth.answers(), *place);
-                    let of_render = is_near_render(case, *channel, value, render[index]);
-                    (index, of_render, is_near(case, *channel, *place, value, exact))
-                })
-                .collect()
-            };
-            let count = |near: &[(usize, bool, bool)]| near.iter().filter(|(_, near, _)| *near).count();
-            let plain = near(&[]);
-            let other = correction.filter(|one| one.touches(*channel)).map(|one| near(&[one]));
-            let chosen = match other {
-                Some(other) if count(&other) > count(&plain) => {
-                    is_used = true;
-                    other
-                }
-                _ => plain,
-            };
-            for (index, of_render, of_truth) in chosen {
-                near_render[index] &= of_render;
-                near_truth[index] &= of_truth;
-            }
-        }
-        let count = |of: &[bool]| of.iter().filter(|near| **near).count() as f64;
-        let (wrong, all) = near_render.split_at(self.wrong);
-        let is_explained = count(wrong) >= MIN_SHARE_OF_WRONG * wrong.len() as f64
-            && count(all) >= MIN_SHARE_OF_ALL * all.len() as f64;
-        let is_new = match correction {
-            // The wrong rays are those that are not near the truth before the correction.
-            Some(_) => near_truth.iter().zip(&near_render).any(|(truth, render)| *render && !*truth),
-            None => count(&near_truth[..self.wrong]) <= MAX_SHARE_NEAR_TRUTH * self.wrong as f64,
+    /// Explanations by rays of two mistakes.
+    pub(crate) fn explain_by_two(&self) -> Vec<ByRays> {
+        let pairs = if self.rules.is_empty() { Vec::new() } else { pairs_of_wrong_rules() };
+        let explain = |(mistakes, rules): ([Mistake; 2], Rules)| {
+            let first = self.render(self.first_places(), rules);
+            let tally = self.tally(rules, &first, None)?;
+            // The pair is told only where each alone says less.
+            let is_needed = mistakes.iter().all(|one| {
+                let alone = self.rules.iter().find(|(mistake, _)| mistake == one);
+                alone.is_none_or(|(_, alone)| self.differing(rules, *alone) >= MIN_WRONG_RAYS)
+            });
+            is_needed.then(|| ByRays { mistakes: mistakes.to_vec(), rules, tally })
         };
-        (is_used && is_explained && is_new).then(|| count(&near_render) as u64)
+        pairs.into_iter().filter_map(explain).collect()
     }
+
+    /// Wrong rays that two sets of rules answer otherwise.
+    fn differing(&self, a: Rules, b: Rules) -> u64 {
+        let [a, b] = [a, b].map(|rules| self.render(&self.wrong, rules));
+        let face = |cast: &Cast| cast.hit.map(|hit| (hit.face, hit.range));
+        a.iter().zip(&b).filter(|(a, b)| face(a) != face(b)).count() as u64
+    }
+
+    /// Explanations by rays of one mistake, after at most one correction.
+    pub(crate) fn explain(&self, correction: Option<&Correction>) -> Vec<ByRays> {
+        let explain = |((mistake, rules), first): (&(Mistake, Rules), &OnceLock<Render>)| {
+            let first = first.get_or_init(|| self.render(self.first_places(), *rules));
+            let tally = self.tally(*rules, first, correction)?;
+            let mistakes = correction.map(|one| one.mistake).into_iter().chain([*mistake]).collect();
+            Some(ByRays { mistakes, rules: *rules, tally })
+        };
+        self.rules.iter().zip(&self.first).filter_map(explain).collect()
+    }
+
+    /// What rules explain, given the first wrong rays by them; `None` if that is too little.
+    pub(crate) fn tally(
+        &self,
+        rules: Rules,
+        first: &[Cast],
+        correction: Option<&Correction>,
+    ) -> Option<Tally> {
+        if self.wrong.is_empty() {
+            return None;
+        }
+        // A correction belongs to the channels in which more of the first rays agree with it.
+        let places = self.first_places();
+        let count = |near: &[bool]| near.iter().filter(|near| **near).count();
+        let mut chosen: Vec<Option<&Correction>> = Vec::new();
+        for channel in &self.channels {
+            let of = |one: Option<&Correction>| count(&self.near_render(*channel, places, first, one));
+            let better = correction.filter(|one| one.touches(*channel) && of(Some(*one)) > of(None));
+            chosen.push(better);
+        }
+        if correction.is_some() && chosen.iter().all(Option::is_none) {
+            return None;
+        }
+        let near = |places: &[Place], render: &[Cast]| {
+            let mut near = vec![true; places.len()];
+            for (channel, one) in self.channels.iter().zip(&chosen) {
+                let of_channel = self.near_render(*channel, places, render, *one);
+                near.iter_mut().zip(of_channel).for_each(|(near, one)| *near &= one);
+            }
+            near
+        };
+        if (count(&near(places, first)) as f64) < MIN_SHARE_OF_FIRST * places.len() as f64 {
+            return None;
+        }
+        // Of rays that meet an edge, rounding decides what they hit: they show nothing, unless edges are what it is about.
+        let near_and_all = |places: &[Place]| {
+            let render = self.render(places, rules);
+            let near = near(places, &render);
+            let shows = |(near, cast): &(bool, &Cast)| *near || rules.edges_open || !cast.is_on_edge;
+            let shown: Vec<bool> = near.into_iter().zip(&render).filter(shows).map(|(near, _)| near).collect();
+            [count(&shown) as u64, shown.len() as u64]
+        };
+        let [[explained, wrong], [kept, right]] = [&self.wrong, &self.right].map(|places| near_and_all(places));
+        let tally = Tally { explained, wrong, broken: right - kept, right };
+        // What is near the truth, too, shows nothing. Of a pair, neither half may be idle.
+        let near_truth = |corrections: &[Option<&Correction>]| {
+            let mut near = vec![true; self.wrong.len()];
+            for (channel, one) in self.channels.iter().zip(corrections) {
+                let corrections: Vec<&Correction> = one.iter().copied().collect();
+                let own = near.iter_mut().zip(&self.wrong).filter(|(_, place)| place.sensor == channel.sensor);
+                for (near, place) in own {
+                    let exact = channel.at(self.case.truth.answers(), *place);
+                    let value = corrected(self.case, *channel, *place, &corrections);
+                    *near &= value.is_some_and(|value| is_near(self.case, *channel, *place, value, exact));
+                }
+            }
+            count(&near)
+        };
+        let is_new = match correction {
+            Some(_) => (self.wrong.len() - near_truth(&chosen)) as u64 >= MIN_WRONG_RAYS,
+            None => {
+                near_truth(&chosen) as f64 <= MAX_SHARE_NEAR_TRUTH * self.wrong.len() as f64
+            }
+        };
+        (is_new && tally.is_enough(MIN_WRONG_RAYS, self.all)).then_some(tally)
+    }
+
+    /// Whether what is stated is near a render, for each place.
+    fn near_render(
+        &self,
+        channel: Channel,
+        places: &[Place],
+        render: &[Cast],
+        correction: Option<&Correction>,
+    ) -> Vec<bool> {
+        let corrections: Vec<&Correction> = correction.into_iter().collect();
+        let near = |(place, cast): (&Place, &Cast)| {
+            place.sensor != channel.sensor
+                || corrected(self.case, channel, *place, &corrections)
+                    .is_none_or(|value| is_near_render(self.case, channel, value, cast.hit))
+        };
+        places.iter().zip(render).map(near).collect()
+    }
+}
+
+/// A limit of t above 1 that separates the wrong rays from the right ones.
+fn near_limit_of(case: Case<'_>, wrong: &WrongRays) -> Option<(Mistake, Rules)> {
+    let [sensor] = *case.sensors else { return None };
+    let scene = case.truth.scene();
+    let axis = match sensor {
+        SensorId::Camera => scene.camera().sensor.focal_length,
+        SensorId::Beam(beam) => scene.beams()[beam].sensor.grid_distance,
+    };
+    let depths = case.truth.answers().map(sensor).depth.as_ref()?;
+    let mut rays = hits(case, sensor, wrong, |place| Some(depths.at(place.i, place.j).get()? / axis));
+    let [low, high] = split(&mut rays, false)?.between;
+    near_limit(plainest_between(low.next_up(), high)).filter(|_| low >= 1.0)
 }
 
 /// Whether a stated value is near that of a cast ray.

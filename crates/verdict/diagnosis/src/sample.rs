@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use raypencil_judge::{Check, Class, Quantity};
 use raypencil_scene::{Place, Scene, SensorId};
 
-use crate::channel::hit_quantity;
+use crate::channel::{Channel, hit_quantity};
 
 /// A ray that sorts: sensor, row, column.
 pub(crate) type Key = (SensorId, u32, u32);
@@ -14,7 +14,7 @@ pub(crate) fn key(place: Place) -> Key {
     (place.sensor, place.j, place.i)
 }
 
-fn place((sensor, j, i): Key) -> Place {
+pub(crate) fn place((sensor, j, i): Key) -> Place {
     Place { sensor, i, j }
 }
 
@@ -23,22 +23,37 @@ pub(crate) struct WrongRays {
     pub(crate) all: BTreeSet<Key>,
     /// Those of which what they meet is wrong, and not only what comes back.
     pub(crate) of_hits: BTreeSet<Key>,
+    /// The wrong values.
+    pub(crate) values: Vec<(Channel, Place)>,
+    /// Rays of which anything was compared.
+    pub(crate) compared: u64,
 }
 
 impl WrongRays {
-    pub(crate) fn of(check: &Check) -> Self {
-        let mut found = Self { all: BTreeSet::new(), of_hits: BTreeSet::new() };
-        for (item, tally) in check.sensors.iter().flat_map(|sensor| sensor.items.iter()) {
-            let is_of_hit = matches!(item.quantity, Quantity::Hit | Quantity::Face)
-                || hit_quantity(item.quantity).is_some();
-            for (place, _) in tally.others.iter().filter(|(_, class)| *class >= Class::Undecided) {
-                found.all.insert(key(*place));
-                if is_of_hit {
-                    found.of_hits.insert(key(*place));
+    /// The wrong rays of some sensors.
+    pub(crate) fn of(check: &Check, sensors: &[SensorId]) -> Self {
+        let mut found =
+            Self { all: BTreeSet::new(), of_hits: BTreeSet::new(), values: Vec::new(), compared: 0 };
+        for result in check.sensors.iter().filter(|result| sensors.contains(&result.sensor)) {
+            found.compared += result.compared();
+            for (item, tally) in result.items.iter() {
+                let is_of_hit = matches!(item.quantity, Quantity::Hit | Quantity::Face)
+                    || hit_quantity(item.quantity).is_some();
+                for (place, _) in tally.others.iter().filter(|(_, class)| *class >= Class::Undecided) {
+                    found.all.insert(key(*place));
+                    found.values.push((Channel { sensor: result.sensor, item }, *place));
+                    if is_of_hit {
+                        found.of_hits.insert(key(*place));
+                    }
                 }
             }
         }
         found
+    }
+
+    /// Rays that are compared and not wrong.
+    pub(crate) fn right(&self) -> u64 {
+        self.compared.saturating_sub(self.all.len() as u64)
     }
 }
 
@@ -48,11 +63,11 @@ pub(crate) fn some_of(rays: &BTreeSet<Key>, count: usize) -> Vec<Place> {
     rays.iter().step_by(step).map(|key| place(*key)).collect()
 }
 
-/// At least 32 rays of each sensor, and about `count` together, with every column and row alike.
-pub(crate) fn spread_over(scene: &Scene, count: u64) -> Vec<Place> {
-    let each = (count / (1 + scene.beams().len() as u64)).max(32);
+/// At least 32 rays of each of some sensors, and about `count` together, with every column and row alike.
+pub(crate) fn spread_over(scene: &Scene, sensors: &[SensorId], count: u64) -> Vec<Place> {
+    let each = (count / (sensors.len().max(1) as u64)).max(32);
     let mut places = Vec::new();
-    for sensor in scene.sensors() {
+    for &sensor in sensors {
         let (width, height) = scene.size(sensor).expect("a sensor of this scene");
         let cells = u64::from(width) * u64::from(height);
         let step = cells.div_ceil(each).max(1);

@@ -3,7 +3,7 @@
 use raypencil_scene::Place;
 
 use crate::agree::is_near;
-use crate::channel::{Channel, Value, channels_of};
+use crate::channel::{Channel, Value};
 use crate::correction::{Case, Correction, corrected};
 
 /// Sampled rays and their exact values, channel by channel.
@@ -14,7 +14,24 @@ pub(crate) struct Trial<'t> {
     /// The sampled rays of each channel, with the exact value.
     samples: Vec<Vec<(Place, Value)>>,
     /// Values that are off without any correction, by channel.
-    uncorrected: Vec<u32>,
+    uncorrected: Vec<Off>,
+}
+
+/// Sampled values that are off.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct Off {
+    pub(crate) held: u32,
+    /// Those whose ray no cell holds after a correction: it is not told whether they are right, so they are as wrong as
+    /// before.
+    pub(crate) lost: u32,
+}
+
+impl Off {
+    const NEVER: Self = Self { held: u32::MAX, lost: 0 };
+
+    fn all(self) -> u32 {
+        self.held.saturating_add(self.lost)
+    }
 }
 
 /// Corrections, and the channels to which each belongs.
@@ -24,15 +41,15 @@ pub(crate) struct Plan {
     /// For each channel, bit k: correction k is applied.
     pub(crate) applied: Vec<(Channel, usize)>,
     /// Sampled values that are off after it.
-    pub(crate) off: u32,
+    pub(crate) off: Off,
 }
 
 /// Values off under one correction, by channel; `None`: the correction does not touch the channel.
-pub(crate) type Single = Vec<Option<u32>>;
+pub(crate) type Single = Vec<Option<Off>>;
 
 impl<'t> Trial<'t> {
     pub(crate) fn new(case: Case<'t>, places: &[Place]) -> Self {
-        let channels = channels_of(case.recorded);
+        let channels = case.channels();
         let exact = |channel: &Channel| {
             let own = places.iter().filter(|place| place.sensor == channel.sensor);
             own.map(|place| (*place, channel.at(case.truth.answers(), *place))).collect()
@@ -45,7 +62,7 @@ impl<'t> Trial<'t> {
 
     /// Sampled values that are off without any correction.
     pub(crate) fn off_uncorrected(&self) -> u32 {
-        self.uncorrected.iter().sum()
+        self.uncorrected.iter().map(|off| off.all()).sum()
     }
 
     /// Number of sampled values.
@@ -54,14 +71,17 @@ impl<'t> Trial<'t> {
     }
 
     /// Values of one channel that are off after some corrections.
-    fn off(&self, index: usize, corrections: &[&Correction]) -> u32 {
+    fn off(&self, index: usize, corrections: &[&Correction]) -> Off {
         let (case, channel) = (self.case, self.channels[index]);
-        let is_off = |(place, exact): &&(Place, Value)| {
-            // A ray that no cell holds is not counted against the correction.
-            let value = corrected(case, channel, *place, corrections);
-            value.is_some_and(|value| !is_near(case, channel, *place, value, *exact))
-        };
-        self.samples[index].iter().filter(is_off).count() as u32
+        let mut off = Off::default();
+        for (place, exact) in &self.samples[index] {
+            let is_off = |value| !is_near(case, channel, *place, value, *exact);
+            match corrected(case, channel, *place, corrections) {
+                Some(value) => off.held += u32::from(is_off(value)),
+                None => off.lost += u32::from(is_off(channel.at(&case.recorded.answers, *place))),
+            }
+        }
+        off
     }
 
     /// What one correction leaves off.
@@ -75,7 +95,7 @@ impl<'t> Trial<'t> {
     /// The best use of one correction, or `None` if it helps no channel.
     pub(crate) fn plan_of_one(&self, one: &Correction, single: &Single) -> Option<Plan> {
         self.plan(vec![one.clone()], |index| {
-            [self.uncorrected[index], single[index].unwrap_or(u32::MAX), u32::MAX, u32::MAX]
+            [self.uncorrected[index], single[index].unwrap_or(Off::NEVER), Off::NEVER, Off::NEVER]
         })
     }
 
@@ -84,25 +104,32 @@ impl<'t> Trial<'t> {
         self.plan(vec![a.clone(), b.clone()], |index| {
             let own = self.uncorrected[index];
             let [of_a, of_b] = [singles[0][index], singles[1][index]];
-            let both = if of_a.is_some() && of_b.is_some() { self.off(index, &[a, b]) } else { u32::MAX };
-            [own, of_a.unwrap_or(u32::MAX), of_b.unwrap_or(u32::MAX), both]
+            let both = if of_a.is_some() && of_b.is_some() { self.off(index, &[a, b]) } else { Off::NEVER };
+            [own, of_a.unwrap_or(Off::NEVER), of_b.unwrap_or(Off::NEVER), both]
         })
     }
 
     /// Chooses for each channel the corrections that leave the fewest values off; among equals the most of them: a
     /// mistake is made everywhere, also where no sampled ray tells. Each must help some channel.
-    fn plan(&self, corrections: Vec<Correction>, off: impl Fn(usize) -> [u32; 4]) -> Option<Plan> {
-        let mut plan = Plan { corrections, applied: Vec::new(), off: 0 };
+    fn plan(&self, corrections: Vec<Correction>, off: impl Fn(usize) -> [Off; 4]) -> Option<Plan> {
+        let mut plan = Plan { corrections, applied: Vec::new(), off: Off::default() };
         let mut used = 0;
         for (index, channel) in self.channels.iter().enumerate() {
             let off = off(index);
             let best = (0..4_usize)
-                .min_by_key(|subset| (off[*subset], std::cmp::Reverse(subset.count_ones())))
+                .min_by_key(|subset| (off[*subset].all(), std::cmp::Reverse(subset.count_ones())))
                 .expect("four subsets");
             plan.applied.push((*channel, best));
-            plan.off += off[best];
+            plan.off.held += off[best].held;
+            plan.off.lost += off[best].lost;
+            for (bit, one) in plan.corrections.iter().enumerate() {
+                // What is said of all lengths must be true of each.
+                if one.is_of_all_lengths() && one.touches(*channel) && best >> bit & 1 == 0 {
+                    return None;
+                }
+            }
             // A correction helps where more values are off without it.
-            let helps = |bit: &usize| best & bit != 0 && off[best & !bit] > off[best];
+            let helps = |bit: &usize| best & bit != 0 && off[best & !bit].all() > off[best].all();
             used |= [1, 2].into_iter().filter(helps).sum::<usize>();
         }
         (used == (1 << plan.corrections.len()) - 1).then_some(plan)

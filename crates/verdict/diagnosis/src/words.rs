@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::mistake::{AngleUnit, Cosine, Leg, LengthUnit, Mistake};
+use crate::mistake::{AngleUnit, Cosine, CutBy, Held, Leg, Length, LengthUnit, Mistake, Turn};
 
 /// The mistake as a clause that follows "if", and the rule that it breaks.
 impl fmt::Display for Mistake {
@@ -134,11 +134,154 @@ impl fmt::Display for Mistake {
             Self::MaximumRangeIgnored => {
                 f.write_str("rays hit faces beyond the maximum range: such a ray hits nothing")
             }
-            Self::CornerRays { columns, rows } => {
+            Self::MaximumRangeAsDepth => {
+                f.write_str("the maximum range limits the depth: it limits the range, along the ray")
+            }
+            Self::NearLimit(t) => write!(f, "a hit needs t >= {}: a hit has t >= 1", short(*t)),
+            Self::EdgesOpen => {
+                f.write_str("rays that meet an edge exactly pass it: a face's edges belong to the face")
+            }
+            Self::CornerRays { columns, rows } if columns.abs() == 0.5 && rows.abs() == 0.5 => {
                 let side = if *columns < 0.0 { "left" } else { "right" };
                 let end = if *rows < 0.0 { "top" } else { "bottom" };
                 write!(f, "rays go through the {end} {side} corner of their cell: a ray goes through the middle")
             }
+            Self::CornerRays { columns, rows } => {
+                let across = part(*columns, "columns", ["left", "right"]);
+                let down = part(*rows, "rows", ["up", "down"]);
+                let both: Vec<String> = [across, down].into_iter().flatten().collect();
+                write!(f, "rays are {} off: a ray goes through the middle of its cell", both.join(" and "))
+            }
+            Self::Affine { of, factor: 1.0, offset } => {
+                let way = if *offset > 0.0 { "long" } else { "short" };
+                let (subject, verb) = subject(*of);
+                write!(f, "{subject} {verb} {} too {way}", metres(offset.abs()))
+            }
+            Self::Affine { of, factor, offset } => {
+                let (subject, verb) = subject(*of);
+                write!(f, "{subject} {verb} {} times the true length", short(*factor))?;
+                match offset {
+                    0.0 => Ok(()),
+                    more if *more > 0.0 => write!(f, " plus {}", metres(*more)),
+                    less => write!(f, " less {}", metres(-*less)),
+                }
+            }
+            Self::FromPlane(of) => {
+                let (subject, verb) = subject(*of);
+                let verb = if verb == "is" { "begins" } else { "begin" };
+                write!(f, "{subject} {verb} at the sensor's plane: lengths begin at the ray's origin")
+            }
+            Self::Rounded { of, quantum, down } => {
+                let (subject, verb) = subject(*of);
+                let down = if *down { " down" } else { "" };
+                write!(f, "{subject} {verb} rounded{down} to multiples of {}", metres(*quantum))
+            }
+            Self::Cut { by, is_above, at, lines, held } => cut(f, *by, *is_above, *at, *lines, *held),
+            Self::PrincipalPoint { stated, truth } => {
+                let one = |name: &str, k: usize| {
+                    (stated[k] != truth[k])
+                        .then(|| format!("{name} is {} in place of {} px", short(stated[k]), short(truth[k])))
+                };
+                let both: Vec<String> = [one("cx", 0), one("cy", 1)].into_iter().flatten().collect();
+                f.write_str(&both.join(" and "))
+            }
+            Self::FocalLength { stated, truth } => write!(
+                f,
+                "the focal length is {} in place of {} mm",
+                short(1e3 * stated),
+                short(1e3 * truth)
+            ),
+            Self::Fan { stated, truth } => {
+                write!(f, "the fan is {} in place of {} degrees", short(*stated), short(*truth))
+            }
+            Self::Turned { about, degrees } => {
+                let by = short(degrees.abs());
+                match about {
+                    Turn::Pitch if *degrees > 0.0 => write!(f, "the sensor looks {by} degrees too far down"),
+                    Turn::Pitch => write!(f, "the sensor looks {by} degrees too far up"),
+                    Turn::Yaw if *degrees > 0.0 => write!(f, "the sensor looks {by} degrees too far to the right"),
+                    Turn::Yaw => write!(f, "the sensor looks {by} degrees too far to the left"),
+                    Turn::Roll if *degrees > 0.0 => write!(f, "the sensor is rolled {by} degrees clockwise"),
+                    Turn::Roll => write!(f, "the sensor is rolled {by} degrees counter-clockwise"),
+                }
+            }
+            Self::Moved(by) => write!(f, "the sensor stands {} m too far in x, y, z of the scene", three(*by)),
+            Self::Posed { degrees, metres } if *metres == [0.0; 3] => {
+                write!(f, "the sensor is turned by {} degrees about its x, y, z axes", three(*degrees))
+            }
+            Self::Posed { degrees, metres } => write!(
+                f,
+                "the sensor is turned by {} degrees about its x, y, z axes and stands {} m too far in x, y, z of the scene",
+                three(*degrees),
+                three(*metres)
+            ),
         }
+    }
+}
+
+/// A number with at most nine significant digits.
+fn short(number: f64) -> String {
+    let rounded: f64 = format!("{number:.8e}").parse().unwrap_or(number);
+    format!("{rounded}")
+}
+
+fn metres(number: f64) -> String {
+    format!("{} m", short(number))
+}
+
+fn three(numbers: [f64; 3]) -> String {
+    format!("({})", numbers.map(short).join(", "))
+}
+
+/// An offset in words; `None` if there is none.
+fn part(offset: f64, unit: &str, [less, more]: [&str; 2]) -> Option<String> {
+    (offset != 0.0).then(|| format!("{} {unit} {}", short(offset.abs()), if offset < 0.0 { less } else { more }))
+}
+
+/// A length and its verb.
+fn subject(of: Length) -> (&'static str, &'static str) {
+    match of {
+        Length::Range => ("range.T", "is"),
+        Length::Depth => ("depth.Z", "is"),
+        Length::All => ("lengths", "are"),
+    }
+}
+
+/// What is lost beyond a number.
+fn cut(
+    f: &mut fmt::Formatter<'_>,
+    by: CutBy,
+    is_above: bool,
+    at: f64,
+    lines: u32,
+    held: Held,
+) -> fmt::Result {
+    let line = match by {
+        CutBy::Row => Some("row"),
+        CutBy::Column => Some("column"),
+        CutBy::Range | CutBy::Depth => None,
+    };
+    if let Some(line) = line {
+        let end = if is_above { "last" } else { "first" };
+        let (what, verb) = match lines {
+            1 => (format!("the {end} {line}"), ["says", "holds", "repeats", "is"]),
+            many => (format!("the {end} {many} {line}s"), ["say", "hold", "repeat", "are"]),
+        };
+        return match held {
+            Held::NoHit => write!(f, "{what} {} \"no hit\" where something is hit", verb[0]),
+            Held::Constant(number) => write!(f, "{what} {} {} everywhere", verb[1], short(number)),
+            Held::Neighbour => write!(f, "{what} {} the {line} beside", verb[2]),
+            Held::Anything => write!(f, "{what} {} wrong, and nothing else", verb[3]),
+        };
+    }
+    let beyond = match (by, is_above) {
+        (CutBy::Depth, true) => "deeper than",
+        (CutBy::Depth, false) => "less deep than",
+        (_, true) => "beyond",
+        (_, false) => "nearer than",
+    };
+    match held {
+        Held::Constant(number) => write!(f, "hits {beyond} {} have the length {}", metres(at), metres(number)),
+        _ => write!(f, "hits {beyond} {} are lost", metres(at)),
     }
 }

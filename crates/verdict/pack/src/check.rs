@@ -70,7 +70,7 @@ pub struct Checked {
     pub recorded: Recorded,
     /// Classes and errors of the candidate's rays.
     pub check: Check,
-    /// The mistake that explains why the candidate is wrong nearly everywhere, or the two. It changes no verdict.
+    /// The mistakes that explain why rays of the candidate are wrong, sensor by sensor. They change no verdict.
     pub diagnosis: Option<Diagnosis>,
     /// The exact answers of the pack.
     pub exact: Answers,

@@ -74,7 +74,7 @@ fn candidate_suite(validation: &Validation, report: &CandidateReport) -> JunitSu
         suite.push(JunitCase::skipped("candidate", message));
         return suite;
     }
-    let mut suite = check_suite(subject, name, &report.check, None);
+    let mut suite = check_suite(subject, name, &report.check);
     let images = report.images.iter().map(|image| {
         let name = format!("image {}, beam {}", image.integrator, image.beam);
         (name, image.is_within(&Z_TEST_LIMITS), "random errors do not explain the difference")

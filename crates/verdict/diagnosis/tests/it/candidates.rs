@@ -3,6 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
+use raypencil_diagnosis::{Diagnosis, Reason};
 use raypencil_files::Storage;
 use raypencil_judge::{GroundTruth, Item, Quantity, Recorded, check};
 use raypencil_referee::ExactRenderer;
@@ -36,12 +37,30 @@ impl Bench {
         Self { scene, truth, exact }
     }
 
-    /// The keys of the mistakes that explain a candidate, and the share of rays that agree then.
+    /// Why a candidate is wrong.
+    pub fn diagnosis(&self, candidate: &Recorded) -> Option<Diagnosis> {
+        let found = check(&self.truth, candidate, &Silent);
+        raypencil_diagnosis::diagnose(&self.truth, candidate, &found)
+    }
+
+    /// The keys of the mistakes that explain a candidate in all its sensors, and the share of wrong rays that agree then.
+    /// Of several reasons, or a reason beside sensors without one, the words.
     #[track_caller]
     pub fn explanation(&self, candidate: &Recorded) -> Option<(Vec<&'static str>, f64)> {
-        let found = check(&self.truth, candidate, &Silent);
-        let diagnosis = raypencil_diagnosis::diagnose(&self.truth, candidate, &found)?;
-        Some((diagnosis.mistakes.iter().map(|one| one.key()).collect(), diagnosis.share()))
+        let diagnosis = self.diagnosis(candidate)?;
+        let [reason] = diagnosis.reasons.as_slice() else { panic!("{}", diagnosis.sentence()) };
+        assert!(diagnosis.unexplained.is_empty(), "{}", diagnosis.sentence());
+        Some((reason.mistakes.iter().map(|one| one.key()).collect(), reason.share()))
+    }
+
+    /// The reasons, each as sensors and keys: `camera, beam 1: rows_reversed`.
+    pub fn reasons(&self, candidate: &Recorded) -> Vec<String> {
+        let one = |reason: &Reason| {
+            let sensors: Vec<String> = reason.sensors.iter().map(ToString::to_string).collect();
+            let keys: Vec<&str> = reason.mistakes.iter().map(|one| one.key()).collect();
+            format!("{}: {}", sensors.join(", "), keys.join(" + "))
+        };
+        self.diagnosis(candidate).map_or(Vec::new(), |found| found.reasons.iter().map(one).collect())
     }
 }
 

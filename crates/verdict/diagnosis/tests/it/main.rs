@@ -1,7 +1,9 @@
 //! Which mistakes `diagnose` names: on candidates made from the exact answers.
 
 mod candidates;
+mod drawn;
 mod one;
 mod rays;
 mod two;
 mod words;
+mod wrong_renderers;

@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use raypencil_diagnosis::{AngleUnit, Cosine, Diagnosis, Leg, LengthUnit, Mistake};
+use raypencil_diagnosis::{
+    AngleUnit, Cosine, CutBy, Diagnosis, Held, Leg, Length, LengthUnit, Mistake, Reason, Turn,
+};
+use raypencil_scene::SensorId;
 
 fn all() -> Vec<Mistake> {
     let [a, b, c] = [Cosine::Incidence, Cosine::OffAxis, Cosine::Emission];
@@ -47,8 +50,47 @@ fn all() -> Vec<Mistake> {
         Mistake::BacksHit,
         Mistake::NearPlaneIgnored,
         Mistake::MaximumRangeIgnored,
+        Mistake::MaximumRangeAsDepth,
+        Mistake::NearLimit(1.25),
+        Mistake::EdgesOpen,
         Mistake::CornerRays { columns: -0.5, rows: -0.5 },
+        Mistake::CornerRays { columns: 0.25, rows: 0.0 },
+        Mistake::CornerRays { columns: 0.25, rows: -1.5 },
+        Mistake::Affine { of: Length::Range, factor: 1.0, offset: 0.01 },
+        Mistake::Affine { of: Length::Range, factor: 1.0, offset: -0.01 },
+        Mistake::Affine { of: Length::Depth, factor: 1.001, offset: 0.0 },
+        Mistake::Affine { of: Length::All, factor: 1.001, offset: 0.5 },
+        Mistake::Affine { of: Length::All, factor: 1.001, offset: -0.5 },
+        Mistake::FromPlane(Length::Range),
+        Mistake::FromPlane(Length::All),
+        Mistake::Rounded { of: Length::Range, quantum: 0.001, down: false },
+        Mistake::Rounded { of: Length::All, quantum: 0.001, down: true },
+        cut(CutBy::Range, true, 12.5, 0, Held::NoHit),
+        cut(CutBy::Depth, true, 12.5, 0, Held::NoHit),
+        cut(CutBy::Range, false, 1.5, 0, Held::NoHit),
+        cut(CutBy::Range, true, 12.5, 0, Held::Constant(12.5)),
+        cut(CutBy::Row, true, 71.0, 1, Held::NoHit),
+        cut(CutBy::Row, false, 0.0, 1, Held::NoHit),
+        cut(CutBy::Row, true, 70.0, 2, Held::NoHit),
+        cut(CutBy::Column, true, 95.0, 1, Held::Constant(0.0)),
+        cut(CutBy::Column, true, 95.0, 1, Held::Neighbour),
+        cut(CutBy::Column, true, 95.0, 1, Held::Anything),
+        Mistake::PrincipalPoint { stated: [46.25, 37.4], truth: [46.75, 37.4] },
+        Mistake::PrincipalPoint { stated: [46.25, 37.5], truth: [46.75, 37.4] },
+        Mistake::FocalLength { stated: 0.008008, truth: 0.008 },
+        Mistake::Fan { stated: 61.0, truth: 60.0 },
+        Mistake::Turned { about: Turn::Pitch, degrees: 0.1 },
+        Mistake::Turned { about: Turn::Pitch, degrees: -0.1 },
+        Mistake::Turned { about: Turn::Yaw, degrees: 0.1 },
+        Mistake::Turned { about: Turn::Roll, degrees: 0.1 },
+        Mistake::Moved([0.0, 0.0, 0.05]),
+        Mistake::Posed { degrees: [0.1, 0.2, 0.3], metres: [0.0; 3] },
+        Mistake::Posed { degrees: [0.1, 0.2, 0.3], metres: [0.0, 0.01, 0.02] },
     ]
+}
+
+fn cut(by: CutBy, is_above: bool, at: f64, lines: u32, held: Held) -> Mistake {
+    Mistake::Cut { by, is_above, at, lines, held }
 }
 
 #[test]
@@ -78,15 +120,44 @@ fn keys_and_words_tell_the_mistakes_apart() {
 
 #[test]
 fn a_share_is_rounded_down() {
-    let sentence = |agree, tried| {
+    let sentence = |explained, wrong| {
         let mistakes = vec![Mistake::DepthForRange, Mistake::Unit(LengthUnit::Millimetres)];
-        Diagnosis { mistakes, agree, tried }.sentence()
+        reason(mistakes, &[SensorId::Camera], true, [explained, wrong]).sentence()
     };
-    assert!(sentence(99_999, 100_000).starts_with("99.99 % agree if range.T holds the depth"));
-    assert!(sentence(5, 5).starts_with("100 % agree if "));
-    assert!(sentence(1003, 2000).starts_with("50.15 % agree if "));
+    assert!(sentence(99_999, 100_000).starts_with("99.99 % of the wrong rays agree if range.T holds the depth"));
+    assert!(sentence(5, 5).starts_with("100 % of the wrong rays agree if "));
+    assert!(sentence(1003, 2000).starts_with("50.15 % of the wrong rays agree if "));
     assert!(
         sentence(5, 5)
             .contains(", and lengths are in millimetres: the unit is the metre (docs/formats/files.md")
     );
+}
+
+fn reason(
+    mistakes: Vec<Mistake>,
+    sensors: &[SensorId],
+    is_everywhere: bool,
+    [explained, wrong]: [u64; 2],
+) -> Reason {
+    Reason { sensors: sensors.to_vec(), is_everywhere, mistakes, wrong, explained, right: 40, broken: 0 }
+}
+
+#[test]
+fn each_reason_names_its_sensors_and_the_others_have_another_cause() {
+    let [camera, first, second] = [SensorId::Camera, SensorId::Beam(0), SensorId::Beam(1)];
+    let of_camera = Mistake::PrincipalPoint { stated: [46.25, 37.4], truth: [46.75, 37.4] };
+    let reasons = vec![
+        reason(vec![of_camera], &[camera], false, [40, 40]),
+        reason(vec![Mistake::BacksHit], &[first, second], false, [20, 20]),
+    ];
+    let found = Diagnosis { reasons, unexplained: vec![SensorId::Beam(2)] };
+    assert_eq!(
+        found.sentence(),
+        "100 % of the wrong rays of the camera agree if cx is 46.25 in place of 46.75 px (docs/guide/reasons.md, \
+         Numbers of a sensor), and no right ray breaks; 100 % of the wrong rays of beam-0 and beam-1 agree if rays hit \
+         the backs of faces: a hit has n.q < 0 (docs/guide/for-implementers.md, The contract for rays), and no right \
+         ray breaks; the wrong rays of beam-2 have another cause"
+    );
+    assert_eq!(found.of(second), Some(&found.reasons[1]));
+    assert_eq!(found.of(SensorId::Beam(2)), None);
 }

@@ -14,7 +14,7 @@ use serde_json::{Map, Value, json};
 use crate::published::PackLabel;
 
 /// Number of the format of `check.json`. It grows when a key changes its meaning or goes away.
-const FORMAT: u32 = 3;
+const FORMAT: u32 = 4;
 
 /// Maximum number of defects that a screen or a test case describes; all are counted.
 pub(crate) const MAX_SHOWN_DEFECTS: usize = 5;
@@ -148,7 +148,7 @@ pub struct BundleFindings {
     pub items: Vec<ItemFindings>,
     /// The worst and most telling rays.
     pub listed: Vec<WrongRay>,
-    /// What explains why its rays are wrong, where it is looked for in this bundle alone.
+    /// What explains why its rays are wrong, as one sentence without its full stop.
     pub why: Option<String>,
 }
 
@@ -366,7 +366,7 @@ impl CheckFindings {
         data.extend([("blind".to_string(), false.into()), ("unknown_channels".to_string(), json!([]))]);
         data.extend(self.of_form.clone());
         let noun = if self.form == PackForm::Triangles { "faces" } else { "rays" };
-        let mut suite = suite(&self.pack, &self.candidate, &self.bundles, self.why.as_deref(), noun);
+        let mut suite = suite(&self.pack, &self.candidate, &self.bundles, noun);
         if !self.hits_anything() {
             suite.push(JunitCase::failed(
                 "something is hit",
@@ -375,9 +375,10 @@ impl CheckFindings {
             ));
         }
         let mut remarks: Vec<String> = self.why.iter().map(|why| format!("Why: {why}.")).collect();
-        // A single bundle has the same reason.
+        // A single bundle has the same reason, and the one sentence names the sensors.
         if self.bundles.len() > 1 {
-            let whys = self.bundles.iter().filter_map(|bundle| Some((&bundle.name, bundle.why.as_ref()?)));
+            let sets = self.bundles.iter().filter(|bundle| bundle.must_hit);
+            let whys = sets.filter_map(|bundle| Some((&bundle.name, bundle.why.as_ref()?)));
             remarks.extend(whys.map(|(name, why)| format!("Why in {name}: {why}.")));
         }
         let mut facts = vec![("Candidate", self.candidate.clone())];
@@ -477,13 +478,11 @@ fn grid(items: &[ItemFindings]) -> Grid {
     grid
 }
 
-/// Test results: a case for each bundle and item. What the candidate does not give is skipped. `why`: the mistake that explains
-/// its failures, if one does.
+/// Test results: a case for each bundle and item. What the candidate does not give is skipped.
 pub(crate) fn suite(
     pack: &str,
     candidate: &str,
     bundles: &[BundleFindings],
-    why: Option<&str>,
     noun: &str,
 ) -> JunitSuite {
     let mut suite = JunitSuite::new(format!("{pack}: {candidate}"));
@@ -492,10 +491,8 @@ pub(crate) fn suite(
         if bundle.items.is_empty() {
             suite.push(JunitCase::skipped("first hit", "not given").with_class(class.as_str()));
         }
-        // A set of rays has a reason of its own, or none.
-        let why = if bundle.must_hit { bundle.why.as_deref() } else { why };
         for item in &bundle.items {
-            suite.push(case(bundle, item, why, noun).with_class(class.as_str()));
+            suite.push(case(bundle, item, bundle.why.as_deref(), noun).with_class(class.as_str()));
         }
     }
     // Without this, a report of skipped cases alone would look like a pass.

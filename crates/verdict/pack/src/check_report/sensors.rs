@@ -1,5 +1,6 @@
 //! A check of sensors in the form of every check.
 
+use raypencil_diagnosis::Reason;
 use raypencil_judge::{
     Answers, Check, Class, Item, ItemTally, Largest, Recorded, SensorResult, key_of, listed_defects, name_of,
     unit_of,
@@ -46,6 +47,9 @@ impl Checked {
 fn findings(checked: &Checked) -> CheckFindings {
     let Checked { subject, recorded, check, diagnosis, is_blind, verified, pack, .. } = checked;
     let mut bundles = sensor_bundles(subject, check, Some((recorded, &checked.exact)));
+    for (bundle, result) in bundles.iter_mut().zip(&check.sensors) {
+        bundle.why = diagnosis.as_ref().and_then(|found| found.of(result.sensor)).map(Reason::sentence);
+    }
     bundles.extend(checked.ray_sets.iter().cloned());
     let totals = listed_totals(check);
     let totals = totals.iter().map(|(item, tally)| {
@@ -60,15 +64,24 @@ fn findings(checked: &Checked) -> CheckFindings {
         let name = set.name.clone();
         Some(ItemFindings { name, by_class: set.by_class, worst_ratio: worst_ratio.cloned(), ..hits })
     });
-    let diagnosis_json = diagnosis.as_ref().map(|found| {
-        let mistakes = found.mistakes.iter().map(|mistake| {
+    let reason_json = |reason: &Reason| {
+        let mistakes = reason.mistakes.iter().map(|mistake| {
             let (file, place) = mistake.docs();
             json!({ "name": mistake.key(), "what": mistake.to_string(), "docs": format!("{file}, {place}") })
         });
         json!({
-            "agree": found.agree,
-            "tried": found.tried,
+            "bundles": reason.sensors.iter().map(ToString::to_string).collect::<Vec<_>>(),
+            "explained": reason.explained,
+            "wrong": reason.wrong,
+            "broken": reason.broken,
+            "right": reason.right,
             "mistakes": mistakes.collect::<Vec<_>>(),
+        })
+    };
+    let diagnosis_json = diagnosis.as_ref().map(|found| {
+        json!({
+            "reasons": found.reasons.iter().map(reason_json).collect::<Vec<_>>(),
+            "unexplained": found.unexplained.iter().map(ToString::to_string).collect::<Vec<_>>(),
         })
     });
     let of_form = [
@@ -110,9 +123,9 @@ fn findings(checked: &Checked) -> CheckFindings {
     }
 }
 
-/// The suite of one check of sensors. `why`: the mistake that explains its failures, if one does.
-pub fn check_suite(subject: &Subject, candidate: &str, check: &Check, why: Option<&str>) -> JunitSuite {
-    suite(&subject.name, candidate, &sensor_bundles(subject, check, None), why, "rays")
+/// The suite of one check of sensors.
+pub fn check_suite(subject: &Subject, candidate: &str, check: &Check) -> JunitSuite {
+    suite(&subject.name, candidate, &sensor_bundles(subject, check, None), "rays")
 }
 
 /// A bundle for each sensor.

@@ -1,0 +1,117 @@
+//! Mistakes that nothing undoes, since a number was rounded or lost: what they make of the exact value is compared with what is
+//! stated.
+
+use crate::channel::{Channel, Value};
+use crate::correction::Case;
+use crate::mistake::{CutBy, Held, Mistake};
+use raypencil_files::Storage;
+use raypencil_judge::Quantity;
+use raypencil_scene::Place;
+
+/// Relative error allowed to a few operations of doubles.
+const FEW_ROUNDINGS: f64 = 8.0 * f64::EPSILON;
+
+/// The value that a recording with this mistake would have had: the exact one, if what is stated is what the mistake
+/// makes of it; the stated one, if the mistake leaves this ray alone; else one that is wrong.
+pub(crate) fn foretold(mistake: Mistake, case: Case<'_>, channel: Channel, place: Place, stated: Value) -> Value {
+    let exact = channel.at(case.truth.answers(), place);
+    let is_foretold = match mistake {
+        Mistake::Rounded { quantum, down, .. } => match (stated, exact) {
+            (Value::Number(stated), Value::Number(exact)) => {
+                let storage = case.recorded.storage.get(&(channel.sensor, channel.item));
+                is_rounded(storage.copied().unwrap_or(Storage::F64), stated, exact, quantum, down)
+            }
+            _ => return stated,
+        },
+        Mistake::Cut { by, is_above, at, held, .. } => {
+            let is_beyond = cut_number(case, by, place).is_some_and(|number| match (by, is_above) {
+                (CutBy::Row | CutBy::Column, true) => number >= at,
+                (CutBy::Row | CutBy::Column, false) => number <= at,
+                (_, true) => number > at,
+                (_, false) => number < at,
+            });
+            if !is_beyond || stated == exact {
+                return stated;
+            }
+            holds(case, channel, place, stated, (by, is_above, held))
+        }
+        _ => return stated,
+    };
+    match (is_foretold, exact) {
+        (true, _) => exact,
+        (false, Value::Flag(flag)) => Value::Flag(!flag),
+        (false, _) => Value::Number(f64::NAN),
+    }
+}
+
+/// The number of a ray by which a recording may be cut; `None` without a hit.
+pub(crate) fn cut_number(case: Case<'_>, by: CutBy, place: Place) -> Option<f64> {
+    let map = case.truth.answers().map(place.sensor);
+    let length = |image: &Option<raypencil_scene::Image<raypencil_scene::Maybe<f64>>>| {
+        image.as_ref().and_then(|image| image.at(place.i, place.j).get())
+    };
+    match by {
+        CutBy::Range => length(&map.range),
+        CutBy::Depth => length(&map.depth),
+        CutBy::Row => Some(f64::from(place.j)),
+        CutBy::Column => Some(f64::from(place.i)),
+    }
+}
+
+/// Whether a stated length is a multiple of a quantum, and the one that the exact length is rounded to.
+pub(crate) fn is_rounded(storage: Storage, stated: f64, exact: f64, quantum: f64, down: bool) -> bool {
+    let slack = storage.ulp(stated) + FEW_ROUNDINGS * exact.abs();
+    let multiple = (stated / quantum).round() * quantum;
+    let error = exact - stated;
+    let is_next = if down {
+        (-slack..quantum + slack).contains(&error)
+    } else {
+        error.abs() <= 0.5 * quantum + slack
+    };
+    (stated - multiple).abs() <= slack && is_next
+}
+
+/// Whether a cell beyond a cut has what stands there.
+pub(crate) fn holds(
+    case: Case<'_>,
+    channel: Channel,
+    place: Place,
+    stated: Value,
+    (by, is_above, held): (CutBy, bool, Held),
+) -> bool {
+    let is_flux = matches!(channel.item.quantity, Quantity::PencilFlux | Quantity::PixelFlux);
+    match held {
+        Held::NoHit => match stated {
+            Value::Nothing | Value::Flag(false) => true,
+            Value::Number(number) => is_flux && number == 0.0,
+            _ => false,
+        },
+        Held::Constant(constant) => is_constant(stated, constant),
+        Held::Neighbour => beside(case, place, by, is_above)
+            .is_some_and(|place| channel.at(&case.recorded.answers, place) == stated),
+        Held::Anything => true,
+    }
+}
+
+/// Whether each number of a value is this one.
+fn is_constant(value: Value, constant: f64) -> bool {
+    match value {
+        Value::Nothing => false,
+        Value::Face(face) => f64::from(face.0) == constant,
+        Value::Number(number) => number == constant,
+        Value::Vector(vector) => vector.to_array().iter().all(|one| *one == constant),
+        Value::Flag(flag) => f64::from(u8::from(flag)) == constant,
+        Value::Pixel(pixel) => f64::from(pixel.i) == constant && f64::from(pixel.j) == constant,
+    }
+}
+
+/// The cell on the other side of a cut that a line next to it repeats.
+fn beside(case: Case<'_>, place: Place, by: CutBy, is_above: bool) -> Option<Place> {
+    let (width, height) = case.truth.scene().size(place.sensor)?;
+    let step = if is_above { -1 } else { 1 };
+    let Place { i, j, .. } = place;
+    Some(match by {
+        CutBy::Column => Place { i: i.checked_add_signed(step).filter(|i| *i < width)?, ..place },
+        _ => Place { j: j.checked_add_signed(step).filter(|j| *j < height)?, ..place },
+    })
+}

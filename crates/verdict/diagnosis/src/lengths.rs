@@ -1,0 +1,151 @@
+//! Factor, offset and quantum of stated lengths, found from them.
+
+use crate::channel::{Value, hit_quantity};
+use crate::correction::{Case, Correction, corrected};
+use crate::forward::is_rounded;
+use crate::mistake::{Length, Mistake};
+use crate::numbers::{middle, plainest};
+use raypencil_files::Storage;
+use raypencil_scene::{HitQuantity, Place};
+
+/// Values from which a number is found, at least.
+const MIN_VALUES: usize = 12;
+
+/// Width of the middle half of what should be one number, relative to the lengths, at most: single precision leaves less.
+const MAX_SPREAD: f64 = 4e-7;
+
+/// A number that is found is so many times the width of what it is found from.
+const SIGNIFICANT: f64 = 16.0;
+
+/// Share of the lengths that must be multiples of a quantum. Tuned: an edge may say otherwise.
+const MIN_SHARE_OF_MULTIPLES: f64 = 0.95;
+
+/// A quantum is so many times the last digit of the file's numbers: every number is a multiple of the last digit.
+const QUANTUM_DIGITS: f64 = 64.0;
+
+/// Stated and exact lengths, the coarsest last digit of the stated, and the longest exact one.
+struct Pairs {
+    of: Length,
+    values: Vec<(f64, f64)>,
+    storage: Storage,
+    ulp: f64,
+    longest: f64,
+}
+
+impl Pairs {
+    fn new(case: Case<'_>, places: &[Place], base: Option<&Correction>, of: Length) -> Option<Self> {
+        let wanted = if of == Length::Depth { HitQuantity::Depth } else { HitQuantity::Range };
+        let corrections: Vec<&Correction> = base.into_iter().collect();
+        let mut pairs = Self { of, values: Vec::new(), storage: Storage::F64, ulp: 0.0, longest: 0.0 };
+        for channel in case.channels() {
+            if hit_quantity(channel.item.quantity) != Some(wanted) {
+                continue;
+            }
+            pairs.storage = *case.recorded.storage.get(&(channel.sensor, channel.item))?;
+            for place in places.iter().filter(|place| place.sensor == channel.sensor) {
+                let exact = channel.at(case.truth.answers(), *place);
+                let stated = corrected(case, channel, *place, &corrections);
+                if let (Some(Value::Number(stated)), Value::Number(exact)) = (stated, exact) {
+                    pairs.values.push((stated, exact));
+                    pairs.ulp = pairs.ulp.max(pairs.storage.ulp(stated));
+                    pairs.longest = pairs.longest.max(exact);
+                }
+            }
+        }
+        (pairs.values.len() >= MIN_VALUES).then_some(pairs)
+    }
+
+    /// Factor, offset, or both.
+    fn affine(&self) -> Vec<Mistake> {
+        let of = self.of;
+        let narrow = MAX_SPREAD * self.longest + self.ulp;
+        let mut found = Vec::new();
+        let mut offsets: Vec<f64> = self.values.iter().map(|(stated, exact)| stated - exact).collect();
+        if let Some((offset, spread)) = middle(&mut offsets, MIN_VALUES)
+            && spread <= narrow
+            && offset.abs() > SIGNIFICANT * (spread + f64::EPSILON * self.longest)
+        {
+            let offset = plainest(offset, spread + self.ulp + 4.0 * f64::EPSILON * self.longest);
+            found.push(Mistake::Affine { of, factor: 1.0, offset });
+        }
+        let ratio = |(stated, exact): &(f64, f64)| (*exact > 0.0).then(|| stated / exact);
+        let mut factors: Vec<f64> = self.values.iter().filter_map(ratio).collect();
+        if let Some((factor, spread)) = middle(&mut factors, MIN_VALUES)
+            && spread * self.longest <= narrow
+            && (factor - 1.0).abs() > SIGNIFICANT * (spread + f64::EPSILON)
+        {
+            let uncertainty = spread + self.ulp / self.longest + 4.0 * f64::EPSILON;
+            found.push(Mistake::Affine { of, factor: plainest(factor, uncertainty), offset: 0.0 });
+        }
+        if found.is_empty() {
+            found.extend(self.line(narrow));
+        }
+        found
+    }
+
+    /// Factor and offset, by the slopes from each length to one that is longer than half of the others.
+    fn line(&self, narrow: f64) -> Option<Mistake> {
+        let mut by_length = self.values.clone();
+        by_length.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let (short, long) = by_length.split_at(by_length.len() / 2);
+        let slope = |(a, b): (&(f64, f64), &(f64, f64))| (b.1 > a.1).then(|| (b.0 - a.0) / (b.1 - a.1));
+        let mut slopes: Vec<f64> = short.iter().zip(long).filter_map(slope).collect();
+        let (factor, spread) = middle(&mut slopes, MIN_VALUES / 2)?;
+        let factor = plainest(factor, spread + 4.0 * f64::EPSILON);
+        let mut offsets: Vec<f64> =
+            self.values.iter().map(|(stated, exact)| stated - factor * exact).collect();
+        let (offset, spread) = middle(&mut offsets, MIN_VALUES)?;
+        let offset = plainest(offset, spread + self.ulp + 8.0 * f64::EPSILON * self.longest);
+        let is_found = spread <= narrow && factor != 1.0 && offset != 0.0 && factor > 0.0;
+        is_found.then_some(Mistake::Affine { of: self.of, factor, offset })
+    }
+
+    /// The largest quantum of which nearly all lengths are multiples.
+    fn rounded(&self) -> Option<Mistake> {
+        let share = |quantum: f64, down: bool| {
+            let is = |(stated, exact): &&(f64, f64)| is_rounded(self.storage, *stated, *exact, quantum, down);
+            self.values.iter().filter(is).count() as f64 / self.values.len() as f64
+        };
+        let right = |(stated, exact): &&(f64, f64)| (stated - exact).abs() <= self.ulp;
+        if 2 * self.values.iter().filter(right).count() > self.values.len() {
+            return None;
+        }
+        quanta().into_iter().filter(|quantum| *quantum >= QUANTUM_DIGITS * self.ulp).find_map(|quantum| {
+            let is = |down: bool| share(quantum, down) >= MIN_SHARE_OF_MULTIPLES;
+            let down = if is(false) { Some(false) } else { is(true).then_some(true) };
+            down.map(|down| Mistake::Rounded { of: self.of, quantum, down })
+        })
+    }
+}
+
+/// Quanta that are tried, metres, the largest first: 1, 2 and 5 of each decimal place, and powers of two.
+fn quanta() -> Vec<f64> {
+    let decimal = |place: i32| [1, 2, 5].map(|digit| format!("{digit}e{place}").parse().unwrap_or(1.0));
+    let mut all: Vec<f64> = (-7..=0).flat_map(decimal).collect();
+    all.extend((1..=20).map(|halvings| 1.0 / f64::from(1_u32 << halvings)));
+    all.sort_by(|a, b| b.total_cmp(a));
+    all
+}
+
+/// Factor, offset and quantum of ranges and of depths, found after `base`; and of both where both are there.
+pub(crate) fn lengths(case: Case<'_>, places: &[Place], base: Option<&Correction>) -> Vec<Correction> {
+    let of = |length| {
+        Pairs::new(case, places, base, length).map_or(Vec::new(), |pairs| {
+            let mut found = pairs.affine();
+            found.extend(pairs.rounded());
+            found
+        })
+    };
+    let [ranges, depths] = [of(Length::Range), of(Length::Depth)];
+    // Of both, where both say so; without depths or ranges there is nothing that is said of both.
+    let of_both = ranges.iter().filter_map(|mistake| {
+        let with = |of| match *mistake {
+            Mistake::Affine { factor, offset, .. } => Mistake::Affine { of, factor, offset },
+            Mistake::Rounded { quantum, down, .. } => Mistake::Rounded { of, quantum, down },
+            other => other,
+        };
+        depths.contains(&with(Length::Depth)).then(|| with(Length::All))
+    });
+    let of_both: Vec<Mistake> = of_both.collect();
+    of_both.into_iter().chain(ranges).chain(depths).map(Correction::from).collect()
+}
