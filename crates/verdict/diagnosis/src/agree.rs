@@ -11,7 +11,7 @@ use crate::numbers::middle;
 
 /// Relative difference of values that count as equal while corrections are tried. Tuned: single precision leaves less
 /// on nearly all rays, and neighbouring rays differ by more.
-pub(crate) const TRIAL_TOLERANCE: f64 = 1e-5;
+const TRIAL_TOLERANCE: f64 = 1e-5;
 
 /// Part of the median error of the wrong values that may be left: what is left is not what was wrong.
 const LEFT_OF_ERROR: f64 = 1.0 / 64.0;

@@ -26,6 +26,9 @@ const OUTLIER_MEDIANS: f64 = 5.0;
 /// fitted to n rays take away one part in n/k.
 const MAX_LEFT: f64 = 1.0 / 32.0;
 
+/// More numbers leave at most this part of what fewer leave. Tuned: of noise they leave nearly all.
+const MORE_NUMBERS_LEAVE: f64 = 1.0 / 8.0;
+
 /// Of two explanations by as many numbers, the worse leaves so many times more; else neither is told.
 const MIN_RATIO: f64 = 3.0;
 
@@ -145,13 +148,13 @@ pub(crate) fn calibrations(case: Case<'_>, places: &[Place]) -> Vec<(Mistake, Ru
         if sights.len() < MIN_RAYS_PER_NUMBER * model.len() {
             continue;
         }
-        // Numbers that explain it are not explained by more of them.
-        if best.first().is_some_and(|fit| fit.model.len() < model.len()) {
-            break;
-        }
         let is_good = |fit: &Fit| fit.left <= MAX_LEFT * before && is_small(scene, sensor, &fit.numbers);
         if let Some(fit) = fit(scene, &sights, model).filter(is_good) {
-            best.push(fit);
+            // More numbers are told only if they leave much less.
+            if best.iter().all(|one| one.model.len() == fit.model.len() || fit.left < MORE_NUMBERS_LEAVE * one.left) {
+                best.retain(|one| one.model.len() == fit.model.len());
+                best.push(fit);
+            }
         }
     }
     best.sort_by(|a, b| a.left.total_cmp(&b.left));

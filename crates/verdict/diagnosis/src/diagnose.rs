@@ -3,10 +3,11 @@
 use crate::agree::tolerance_of;
 use crate::correction::Case;
 use crate::diagnosis::{Diagnosis, Reason};
+use crate::mistake::Mistake;
 use crate::sample::WrongRays;
 use crate::search::{Finding, Search};
-use raypencil_judge::{Check, Class, GroundTruth, Recorded};
-use raypencil_scene::SensorId;
+use raypencil_judge::{Check, Class, GroundTruth, Recorded, check_rays};
+use raypencil_scene::{Place, Precision, SensorId, Silent};
 
 /// Looks for the mistake that explains why rays are wrong, or for two: of each sensor by itself, and then of those
 /// together whose rays are too few.
@@ -27,7 +28,9 @@ pub fn diagnose(truth: &GroundTruth<'_>, recorded: &Recorded, check: &Check) -> 
     let mut open = Vec::new();
     for result in check.sensors.iter().filter(is_wrong) {
         let sensors = vec![result.sensor];
-        match with_search(&sensors, &|search| search.find()) {
+        let finding = with_search(&sensors, &|search| search.find())
+            .or_else(|| beside_single_precision(truth, recorded, check, &sensors));
+        match finding {
             Some(finding) => found.push((sensors, finding)),
             None => open.push(result.sensor),
         }
@@ -51,11 +54,41 @@ pub fn diagnose(truth: &GroundTruth<'_>, recorded: &Recorded, check: &Check) -> 
     (!reasons.is_empty()).then_some(Diagnosis { reasons, unexplained: open })
 }
 
+/// A reason for what is wrong even for arithmetic of single precision, where most rays are wrong for its sake.
+fn beside_single_precision(
+    truth: &GroundTruth<'_>,
+    recorded: &Recorded,
+    check: &Check,
+    sensors: &[SensorId],
+) -> Option<Finding> {
+    let wrong = WrongRays::of(check, sensors);
+    let tolerance = tolerance_of(truth, recorded, &wrong.values);
+    if !Search::new(Case { truth, recorded, sensors, tolerance }, &wrong).is_secretly_single() {
+        return None;
+    }
+    let single = Recorded { precision: Precision::F32, ..recorded.clone() };
+    let is_asked = |place: Place| sensors.contains(&place.sensor);
+    let check = check_rays(truth, &single, &is_asked, &Silent);
+    let left = WrongRays::of(&check, sensors);
+    if 2 * left.all.len() > wrong.all.len() {
+        return None;
+    }
+    let tolerance = tolerance_of(truth, &single, &left.values);
+    let search = Search::new(Case { truth, recorded: &single, sensors, tolerance }, &left);
+    // Two at once are enough.
+    let mut found = search.find().filter(|found| found.mistakes.len() == 1)?;
+    found.mistakes.push(Mistake::SinglePrecision);
+    found.tally.explained += (wrong.all.len() - left.all.len()) as u64;
+    found.tally.wrong += (wrong.all.len() - left.all.len()) as u64;
+    found.tally.right = found.tally.right.min(wrong.right());
+    Some(found)
+}
+
 /// Sensors with the same reason, in the same words, are told together.
 fn together(found: Vec<(Vec<SensorId>, Finding)>, compared: usize) -> Vec<Reason> {
     let mut reasons: Vec<Reason> = Vec::new();
     for (sensors, Finding { mistakes, tally, .. }) in found {
-        let words = |mistakes: &[crate::mistake::Mistake]| -> Vec<String> {
+        let words = |mistakes: &[Mistake]| -> Vec<String> {
             mistakes.iter().map(ToString::to_string).collect()
         };
         match reasons.iter_mut().find(|reason| words(&reason.mistakes) == words(&mistakes)) {

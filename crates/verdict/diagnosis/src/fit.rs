@@ -24,6 +24,9 @@ const MAX_FITTED_RAYS: u64 = 1 << 17;
 /// Cells with one and the same length, from which it may stand for "no hit". Tuned.
 const MIN_CELLS_OF_CONSTANT: usize = 8;
 
+/// Cells that say "no hit" beside a constant that means it: at most one for so many of these. Tuned: a NaN may be an error.
+const EMPTY_ONE_IN: usize = 50;
+
 /// Values from which a factor is found, at least; and the relative width of their middle half, at most. Tuned: the
 /// values of single precision differ by less.
 const MIN_VALUES_OF_FACTOR: usize = 8;
@@ -117,8 +120,10 @@ fn constants(case: Case<'_>) -> Vec<Mistake> {
     for map in case.recorded.answers.maps.iter().filter(|map| case.sensors.contains(&map.sensor)) {
         let Some(raster) = HitQuantity::ALL.into_iter().find_map(|one| map.raster(one)) else { continue };
         let mut cells: BTreeMap<u64, usize> = BTreeMap::new();
+        let mut empty = 0_usize;
         for place in rays(case, map.sensor) {
             let value = raster.at(place.i, place.j);
+            empty += usize::from(value.is_none());
             if let Some(value) = value
                 && value.components().iter().all(|one| *one == value.components()[0])
             {
@@ -126,7 +131,9 @@ fn constants(case: Case<'_>) -> Vec<Mistake> {
             }
         }
         let most = cells.into_iter().max_by_key(|(bits, count)| (*count, std::cmp::Reverse(*bits)));
-        let Some((bits, _)) = most.filter(|(_, count)| *count >= MIN_CELLS_OF_CONSTANT) else { continue };
+        // Where "no hit" is said otherwise, the constant does not mean it.
+        let is_all = |count: usize| count >= MIN_CELLS_OF_CONSTANT && empty * EMPTY_ONE_IN <= count;
+        let Some((bits, _)) = most.filter(|(_, count)| is_all(*count)) else { continue };
         let constant = f64::from_bits(bits);
         let max_range = case.truth.scene().max_range(map.sensor).unwrap_or(f64::INFINITY);
         let mistake = match constant {

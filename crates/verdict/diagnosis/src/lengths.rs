@@ -4,7 +4,7 @@ use crate::channel::{Value, hit_quantity};
 use crate::correction::{Case, Correction, corrected};
 use crate::forward::is_rounded;
 use crate::mistake::{Length, Mistake};
-use crate::numbers::{middle, plainest};
+use crate::numbers::{middle, plainest, plainest_between};
 use raypencil_files::Storage;
 use raypencil_scene::{HitQuantity, Place};
 
@@ -21,12 +21,18 @@ const SIGNIFICANT: f64 = 16.0;
 const MIN_SHARE_OF_MULTIPLES: f64 = 0.95;
 
 /// A quantum is so many times the last digit of the file's numbers: every number is a multiple of the last digit.
-const QUANTUM_DIGITS: f64 = 64.0;
+const QUANTUM_DIGITS: f64 = 16.0;
+
+/// Cosine of the angle between two planes that count as two. In one plane, a factor is the same as another place of the
+/// sensor: nothing tells them apart.
+const MAX_COSINE_OF_TWO_PLANES: f64 = 0.999;
 
 /// Stated and exact lengths, the coarsest last digit of the stated, and the longest exact one.
 struct Pairs {
     of: Length,
     values: Vec<(f64, f64)>,
+    /// Whether they end in several planes.
+    has_planes: bool,
     storage: Storage,
     ulp: f64,
     longest: f64,
@@ -36,7 +42,15 @@ impl Pairs {
     fn new(case: Case<'_>, places: &[Place], base: Option<&Correction>, of: Length) -> Option<Self> {
         let wanted = if of == Length::Depth { HitQuantity::Depth } else { HitQuantity::Range };
         let corrections: Vec<&Correction> = base.into_iter().collect();
-        let mut pairs = Self { of, values: Vec::new(), storage: Storage::F64, ulp: 0.0, longest: 0.0 };
+        let mut pairs = Self {
+            of,
+            values: Vec::new(),
+            has_planes: false,
+            storage: Storage::F64,
+            ulp: 0.0,
+            longest: 0.0,
+        };
+        let mut first_normal = None;
         for channel in case.channels() {
             if hit_quantity(channel.item.quantity) != Some(wanted) {
                 continue;
@@ -47,6 +61,10 @@ impl Pairs {
                 let stated = corrected(case, channel, *place, &corrections);
                 if let (Some(Value::Number(stated)), Value::Number(exact)) = (stated, exact) {
                     pairs.values.push((stated, exact));
+                    if let Some(hit) = case.truth.hit(*place) {
+                        let first = *first_normal.get_or_insert(hit.normal);
+                        pairs.has_planes |= first.dot(hit.normal) < MAX_COSINE_OF_TWO_PLANES;
+                    }
                     pairs.ulp = pairs.ulp.max(pairs.storage.ulp(stated));
                     pairs.longest = pairs.longest.max(exact);
                 }
@@ -57,6 +75,9 @@ impl Pairs {
 
     /// Factor, offset, or both.
     fn affine(&self) -> Vec<Mistake> {
+        if !self.has_planes {
+            return Vec::new();
+        }
         let of = self.of;
         let narrow = MAX_SPREAD * self.longest + self.ulp;
         let mut found = Vec::new();
@@ -65,7 +86,8 @@ impl Pairs {
             && spread <= narrow
             && offset.abs() > SIGNIFICANT * (spread + f64::EPSILON * self.longest)
         {
-            let offset = plainest(offset, spread + self.ulp + 4.0 * f64::EPSILON * self.longest);
+            let of_ray = |stated: f64, exact: f64| stated - exact;
+            let offset = self.told(offset, spread + 4.0 * f64::EPSILON * self.longest, &of_ray);
             found.push(Mistake::Affine { of, factor: 1.0, offset });
         }
         let ratio = |(stated, exact): &(f64, f64)| (*exact > 0.0).then(|| stated / exact);
@@ -74,13 +96,30 @@ impl Pairs {
             && spread * self.longest <= narrow
             && (factor - 1.0).abs() > SIGNIFICANT * (spread + f64::EPSILON)
         {
-            let uncertainty = spread + self.ulp / self.longest + 4.0 * f64::EPSILON;
-            found.push(Mistake::Affine { of, factor: plainest(factor, uncertainty), offset: 0.0 });
+            let of_ray = |stated: f64, exact: f64| stated / exact;
+            let factor = self.told(factor, spread + 4.0 * f64::EPSILON, &of_ray);
+            found.push(Mistake::Affine { of, factor, offset: 0.0 });
         }
         if found.is_empty() {
             found.extend(self.line(narrow));
         }
         found
+    }
+
+    /// The plainest number that each ray allows whose last digit was rounded; without one, the plainest near the median.
+    fn told(&self, median: f64, uncertainty: f64, of_ray: &dyn Fn(f64, f64) -> f64) -> f64 {
+        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+        for (stated, exact) in &self.values {
+            let half = 0.5 * self.storage.ulp(*stated);
+            let number = of_ray(*stated, *exact);
+            let rounding = 4.0 * f64::EPSILON * number.abs().max(f64::EPSILON * exact);
+            let [a, b] = [of_ray(stated - half, *exact) - rounding, of_ray(stated + half, *exact) + rounding];
+            // Edges say something else.
+            if (number - median).abs() <= 8.0 * uncertainty + (b - a) {
+                (low, high) = (low.max(a), high.min(b));
+            }
+        }
+        if low < high { plainest_between(low, high) } else { plainest(median, uncertainty) }
     }
 
     /// Factor and offset, by the slopes from each length to one that is longer than half of the others.

@@ -1,8 +1,7 @@
 //! The search for a reason, of one sensor or of several together: single mistakes first, then pairs. The judge has the last
 //! word on each.
 
-use crate::agree::TRIAL_TOLERANCE;
-use crate::channel::Value;
+use crate::channel::{Channel, Value};
 use crate::correction::{Case, Correction, corrected};
 use crate::cuts::cuts;
 use crate::fit::{fitted, fixed};
@@ -13,6 +12,7 @@ use crate::rules::Rules;
 use crate::sample::{WrongRays, key, some_of, spread_over};
 use crate::tally::{MIN_CONFIRMING_RAYS, MIN_WRONG_RAYS, Tally};
 use crate::trial::{Plan, Single, Trial};
+use raypencil_files::Storage;
 use raypencil_judge::Quantity;
 use raypencil_scene::{Place, Precision};
 
@@ -33,13 +33,16 @@ const MAX_JUDGED_PAIRS: usize = 8;
 /// alone, so the ranges must prove that the rays are right.
 const MAX_OFF_BESIDE_ORDER: f64 = 0.02;
 
-/// Relative error of a value that looks as computed in single precision: 2^-28 and more, at half of the values.
-/// Tuned: the unit roundoff is 2^-24, that of double precision 2^-53.
-const LEAST_SINGLE_ERROR: f64 = 1.0 / (1 << 28) as f64;
+/// Relative errors of values that look as computed in single precision: 2^-28 to 2^-21, at half of the values.
+/// Tuned: the unit roundoff is 2^-24, that of double precision 2^-53. The judge excuses more where a ray grazes a face.
+const SINGLE_ERRORS: std::ops::RangeInclusive<f64> = 1.0 / (1 << 28) as f64..=1.0 / (1 << 21) as f64;
 
 /// Share of the numbers that have no more digits than single precision, at least, if the arithmetic is of that. Tuned: a
 /// length in single precision may be scaled in double.
 const MIN_SHARE_OF_SINGLE: f64 = 0.5;
+
+/// Share of the errors that have each sign, at least. Tuned: roundings go both ways, and a factor or an offset does not.
+const MIN_SHARE_OF_SIGN: f64 = 0.125;
 
 /// A reason that was found.
 #[derive(Debug, Clone)]
@@ -116,9 +119,19 @@ impl<'t> Search<'t> {
         best(found)
     }
 
+    /// Whether the recording looks as computed in single precision, and does not say so.
+    pub(crate) fn is_secretly_single(&self) -> bool {
+        let none = Plan { corrections: Vec::new(), applied: Vec::new(), off: Default::default() };
+        self.case.recorded.precision == Precision::F64 && self.looks_single(&none)
+    }
+
     /// The same reason for these sensors, if it explains their wrong rays.
     pub(crate) fn confirm(&self, found: &Finding) -> Option<Finding> {
         if (self.wrong.all.len() as u64) < MIN_CONFIRMING_RAYS || found.rules.is_some() {
+            return None;
+        }
+        // A cut was found in the other sensor's rays.
+        if found.mistakes.iter().any(|one| matches!(one, Mistake::Cut { .. })) {
             return None;
         }
         let plan = match found.corrections.as_slice() {
@@ -207,10 +220,26 @@ impl<'t> Search<'t> {
         Some(found)
     }
 
-    /// Whether half of the numbers have an error of single precision, and nearly all no larger one; and whether they have
-    /// the digits of single precision.
+    /// Whether half of the numbers that are not right have an error of single precision, and no more digits than that.
     fn looks_single(&self, plan: &Plan) -> bool {
-        let (mut numbers, mut off, mut short) = (0_usize, 0_usize, 0_usize);
+        // What a file of single precision rounds away grows or shrinks when numbers are changed: that is no arithmetic.
+        let changes = |one: &Correction| {
+            matches!(
+                one.mistake,
+                Mistake::Affine { .. }
+                    | Mistake::Rounded { .. }
+                    | Mistake::FromPlane(_)
+                    | Mistake::FluxFactor(_)
+                    | Mistake::AngleForCosine(_)
+            )
+        };
+        let is_double = |(channel, _): &(Channel, usize)| {
+            self.case.recorded.storage.get(&(channel.sensor, channel.item)) == Some(&Storage::F64)
+        };
+        if plan.corrections.iter().any(changes) && !plan.applied.iter().all(is_double) {
+            return false;
+        }
+        let (mut numbers, mut off, mut short, mut signs) = (0_usize, 0_usize, 0_usize, [0_usize; 2]);
         for channel in &self.trial.channels {
             let subset = plan.applied.iter().find(|(of, _)| of == channel).map_or(0, |(_, subset)| *subset);
             let all = plan.corrections.iter().enumerate();
@@ -223,15 +252,24 @@ impl<'t> Search<'t> {
                     && exact != 0.0
                 {
                     let error = ((stated - exact) / exact).abs();
-                    numbers += 1;
-                    off += usize::from((LEAST_SINGLE_ERROR..=TRIAL_TOLERANCE).contains(&error));
-                    if let Value::Number(own) = channel.at(&self.case.recorded.answers, *place) {
-                        short += usize::from(own == f64::from(own as f32));
+                    let Value::Number(own) = channel.at(&self.case.recorded.answers, *place) else { continue };
+                    // What the file rounds away is no error of arithmetic.
+                    let storage = self.case.recorded.storage.get(&(channel.sensor, channel.item));
+                    let ulp = storage.map_or(0.0, |storage| storage.ulp(own));
+                    if error <= 0.51 * (ulp / own).abs() {
+                        continue;
                     }
+                    numbers += 1;
+                    off += usize::from(SINGLE_ERRORS.contains(&error));
+                    signs[0] += usize::from(stated > exact);
+                    signs[1] += usize::from(stated < exact);
+                    short += usize::from(own == f64::from(own as f32));
                 }
             }
         }
-        numbers > 0 && 2 * off >= numbers && short as f64 >= MIN_SHARE_OF_SINGLE * numbers as f64
+        let is_of_both_signs = signs.iter().all(|sign| *sign as f64 >= MIN_SHARE_OF_SIGN * off as f64);
+        let is_short = short as f64 >= MIN_SHARE_OF_SINGLE * numbers as f64;
+        numbers > 0 && 2 * off >= numbers && is_short && is_of_both_signs
     }
 }
 

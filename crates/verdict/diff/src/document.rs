@@ -20,7 +20,7 @@ const READING: [&str; 2] = [
     "Two recordings are compared cell by cell, under the names that both have; no scene is needed. NaN is the same as NaN, an \
      infinity as itself. NaN or an infinity against a number is a difference that no threshold allows. Whole numbers are the same or \
      not.",
-    "Differ counts cells that no threshold allows. Largest is the largest absolute difference of two finite numbers, ulp the largest \
+    "Differ counts cells that no threshold allows; not finite are those of them with NaN or an infinity on one side alone. Largest is the largest absolute difference of two finite numbers, ulp the largest \
      in units of the last place of the coarser of the two files. RMS and mean are over all cells that are finite on both sides.",
 ];
 
@@ -101,6 +101,7 @@ fn grid(difference: &Difference) -> Grid {
         Column::number("cells"),
         Column::number("differ"),
         Column::number("share"),
+        Column::number("not finite"),
         Column::number("largest"),
         Column::number("ulp"),
         Column::number("RMS"),
@@ -118,7 +119,7 @@ fn grid(difference: &Difference) -> Grid {
     grid
 }
 
-fn row(channel: &ChannelDifference) -> [String; 11] {
+fn row(channel: &ChannelDifference) -> [String; 12] {
     let optional = |value: Option<f64>| value.map_or(String::new(), number);
     let [place, a, b] = channel.worst.map_or([const { String::new() }; 3], |worst| {
         [format!("{},{}", worst.i, worst.j), exact(worst.a), exact(worst.b)]
@@ -128,6 +129,8 @@ fn row(channel: &ChannelDifference) -> [String; 11] {
         count(channel.cells()),
         count(channel.differing),
         format!("{} %", number(channel.percent())),
+        // Empty, where there is none: such cells are rare, and they have no part in the numbers that follow.
+        if channel.incomparable == 0 { String::new() } else { count(channel.incomparable) },
         channel.largest.map_or(String::new(), |largest| quantity(largest, &channel.unit)),
         optional(channel.largest_ulp),
         optional(channel.rms),

@@ -57,7 +57,7 @@ export class Explorer {
       model,
       this.channels.map(({ key }) => key),
     );
-    this.state = new State(this.plain);
+    this.state = new State({ ...this.plain, ...openingChoice(model, this.plain, this.channels) });
     this.rays = new RayList(this.data);
     this.pictures = new PanelSet(model, this.state, this.painter, () => this.painted());
     /** Whether the first picture is there. All else waits for it. */
@@ -340,6 +340,17 @@ export class Explorer {
       );
     }
   }
+}
+
+/**
+ * What the page opens on, if its model says so: a ray that is wrong, and the difference there.
+ * @param {PageModel} model @param {Choice} plain @param {{key: string}[]} channels
+ * @returns {Partial<Choice>}
+ */
+function openingChoice(model, plain, channels) {
+  const asked = model.opening ? choiceOfHash(model, model.opening) : null;
+  const isKnown = channels.some(({ key }) => key === asked?.channel);
+  return asked ? { ...asked, channel: isKnown ? (asked.channel ?? plain.channel) : plain.channel } : {};
 }
 
 /** @param {PageModel} model @param {string[]} channels @returns {Choice} */

@@ -73,6 +73,7 @@
  * @property {Record<string, {title: string, words: string}>} [switches]
  * @property {ArrayReference|null} [rays]
  * @property {string} [rays_words]
+ * @property {string} [opening] the address of the cell that the page opens on
  */
 
 /** Class, cause or quantity that a cell does not have. */

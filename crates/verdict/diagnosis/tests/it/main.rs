@@ -4,6 +4,7 @@ mod candidates;
 mod drawn;
 mod one;
 mod rays;
+mod sensors;
 mod two;
 mod words;
 mod wrong_renderers;

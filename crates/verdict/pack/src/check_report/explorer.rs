@@ -4,7 +4,9 @@ use rayon::prelude::*;
 use raypencil_explorer::{
     DescribedRay, ExplorerPage, RayMargins, RayToDescribe, SensorPair, SideKind, SideMaps, rays_to_describe,
 };
-use raypencil_judge::{Answers, GroundTruth, Judge, JudgeShare, check_ray_against};
+use raypencil_judge::{
+    Answers, Class, GroundTruth, Judge, JudgeShare, Quantity, SensorResult, check_ray_against,
+};
 use raypencil_referee::Format;
 use raypencil_report::described_words;
 use raypencil_scene::{Image, Place, Sampling, SensorId};
@@ -52,7 +54,29 @@ pub(super) fn explorer(checked: &Checked) -> String {
     let rays: Vec<DescribedRay> = chosen.par_iter().map(|ray| describe(checked, &truth, ray.place)).collect();
     let words = described_words(rays.len() as u64, total);
     page.set_rays(&rays, &words);
+    if let Some(opening) = opening(checked) {
+        page.insert("opening", opening.into());
+    }
     page.html()
+}
+
+/// The address of the worst ray of the sensor with the most wrong rays, and the difference of what is wrong there; `None` if
+/// nothing is wrong.
+fn opening(checked: &Checked) -> Option<String> {
+    let wrong = |result: &&SensorResult| result.of(Class::Defect);
+    let sensors = checked.check.sensors.iter().filter(|result| wrong(result) > 0);
+    // Among equals the first.
+    let worst = sensors.reduce(|worst, other| if wrong(&other) > wrong(&worst) { other } else { worst })?;
+    let ray = worst.listed.first()?;
+    let channel = match ray.item.quantity {
+        Quantity::Face => "face.I",
+        Quantity::Depth => "depth.Z",
+        Quantity::CosIncidence => "incidence.V",
+        Quantity::Visible => "visible.V",
+        Quantity::PencilFlux => "flux.V",
+        _ => "range.T",
+    };
+    Some(format!("{}/{},{}/{channel}/diff", worst.sensor, ray.place.i, ray.place.j))
 }
 
 /// The images of the beams, which belong to the camera.

@@ -298,9 +298,14 @@ impl CheckFindings {
                 let partial = if is_partial { "; nothing is known about what was not compared" } else { "" };
                 let (agree, tie, rounding) = (of(Class::Agree), of(Class::Tie), of(Class::Rounding));
                 match &self.coarseness {
-                    None => format!(
-                        "{rays} rays agree with the exact answers: {agree} exact, {tie} tie, {rounding} rounding{partial}."
-                    ),
+                    None => {
+                        // A number is called exact only if it is.
+                        let is_exact = |item: &ItemFindings| item.worst_ulp.as_ref().is_none_or(|one| one.value == 0.0);
+                        let words = if self.totals.iter().all(is_exact) { "exact" } else { "within rounding" };
+                        format!(
+                            "{rays} rays agree with the exact answers: {agree} {words}, {tie} tie, {rounding} rounding{partial}."
+                        )
+                    }
                     Some(coarse) => {
                         format!(
                             "{rays} rays agree to {coarse}: {agree} agree, {tie} tie, {rounding} rounding{partial}."

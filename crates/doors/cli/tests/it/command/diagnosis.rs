@@ -38,14 +38,16 @@ fn reversed_rows_are_named_on_all_reports_and_the_verdict_stays() {
     assert_passes(&check(folder.path(), "pyramids", &[]));
     edit(&folder, "camera.exr", flip);
     let output = check(folder.path(), "pyramids", &["-o", "out"]);
-    let why =
-        "Why: 100 % agree if rows are reversed: row 0 is the top row (docs/formats/files.md, Orientation).";
+    let why = "Why: 100 % of the wrong rays agree if rows are reversed: row 0 is the top row (docs/formats/files.md, Orientation)";
     assert_fails(&output, &["rays are wrong", why]);
     let read = |name: &str| fs::read_to_string(folder.path().join("out").join(name)).expect("a report");
     let json: serde_json::Value = serde_json::from_str(&read("check.json")).expect("JSON");
     assert_eq!(json["verdict"], "defects");
-    assert_eq!(json["diagnosis"]["mistakes"][0]["name"], "rows_reversed");
-    assert_eq!(json["diagnosis"]["agree"], json["diagnosis"]["tried"]);
+    let reason = &json["diagnosis"]["reasons"][0];
+    assert_eq!(reason["mistakes"][0]["name"], "rows_reversed");
+    assert_eq!(reason["bundles"][0], "camera");
+    assert_eq!(reason["explained"], reason["wrong"]);
+    assert_eq!(reason["broken"], 0);
     assert!(read("junit.xml").contains("agree if rows are reversed"), "{}", read("junit.xml"));
 }
 
@@ -89,7 +91,7 @@ fn a_number_for_no_hit_without_faces_is_refused_or_named() {
     assert_passes(&check(folder.path(), "pyramids", &[]));
     // A range of 0 breaks no rule of files: the rays are judged, and the constant is found.
     missed(0.0);
-    assert_fails(&check(folder.path(), "pyramids", &[]), &["Why: 100 % agree if 0 means \"no hit\""]);
+    assert_fails(&check(folder.path(), "pyramids", &[]), &["Why: 100 % of the wrong rays agree if 0 means \"no hit\""]);
     assert_passes(&check(folder.path(), "pyramids", &["--miss", "0"]));
 }
 

@@ -1,0 +1,136 @@
+//! Reasons sensor by sensor: each mistake in one of them, beside another one in another, and what must have no reason.
+
+use raypencil_diagnosis::Mistake;
+use raypencil_scene::SensorId;
+
+use super::candidates::*;
+use super::wrong_renderers::{MISTAKES, Make, Random, Wrong};
+
+const CAMERA: SensorId = SensorId::Camera;
+const BEAM: SensorId = SensorId::Beam(1);
+
+/// Mistakes in the camera, and the key by which each is told.
+const TABLE: [(&str, &str); 17] = [
+    ("last row lost", "lines_lost"),
+    ("last row 0", "lines_lost"),
+    ("last row twice", "line_doubled"),
+    ("last column lost", "lines_lost"),
+    ("top left corner", "corner_rays"),
+    ("half a pixel in x", "principal_point"),
+    ("principal point", "principal_point"),
+    ("focal length", "focal_length"),
+    ("pitch", "pitch"),
+    ("pose", "pose"),
+    ("range scaled", "factor"),
+    ("range offset", "offset"),
+    ("range rounded", "rounded"),
+    ("far hits lost", "cut_off"),
+    ("far ranges clamped", "cut_off"),
+    ("range from the plane", "from_plane"),
+    ("rows reversed", "rows_reversed"),
+];
+
+fn named(name: &str) -> Make {
+    *MISTAKES.iter().find(|(own, _)| *own == name).expect("a mistake of the list")
+}
+
+/// A candidate with mistakes in some sensors.
+fn made(bench: &Bench, makes: &[(&str, SensorId)]) -> Wrong {
+    let mut wrong = Wrong::right(bench);
+    for (name, sensor) in makes {
+        wrong.make(bench, named(name), *sensor, &mut Random(3));
+    }
+    wrong
+}
+
+#[test]
+fn a_mistake_in_the_camera_is_told_of_the_camera_alone() {
+    for (name, key) in TABLE {
+        let wrong = made(few_pyramids(), &[(name, CAMERA)]);
+        assert_eq!(few_pyramids().reasons(&wrong.candidate), [format!("camera: {key}")], "{name}");
+        assert_eq!(wrong.false_reason(few_pyramids().diagnosis(&wrong.candidate).as_ref()), None);
+    }
+}
+
+#[test]
+fn two_sensors_with_their_own_mistakes_have_their_own_reasons() {
+    let of_beam = [("rows reversed", "rows_reversed"), ("range offset", "offset"), ("fan", "fan"), ("yaw", "yaw")];
+    for (index, (name, key)) in TABLE.iter().enumerate().step_by(3) {
+        let (other, other_key) = of_beam[index % of_beam.len()];
+        let wrong = made(few_pyramids(), &[(*name, CAMERA), (other, BEAM)]);
+        let expected = [format!("camera: {key}"), format!("beam-1: {other_key}")];
+        assert_eq!(few_pyramids().reasons(&wrong.candidate), expected, "{name}, {other}");
+    }
+}
+
+#[test]
+fn one_mistake_in_two_sensors_is_one_reason() {
+    let beams = made(few_pyramids(), &[("rows reversed", SensorId::Beam(0)), ("rows reversed", BEAM)]);
+    assert_eq!(few_pyramids().reasons(&beams.candidate), ["beam-0, beam-1: rows_reversed"]);
+    let found = few_pyramids().diagnosis(&beams.candidate).unwrap();
+    assert!(!found.reasons[0].is_everywhere);
+    let all = made(few_pyramids(), &[("rows reversed", CAMERA), ("rows reversed", SensorId::Beam(0)), ("rows reversed", BEAM)]);
+    assert!(few_pyramids().diagnosis(&all.candidate).unwrap().reasons[0].is_everywhere);
+}
+
+#[test]
+fn a_sensor_without_a_reason_is_said_to_have_another_cause() {
+    let wrong = made(few_pyramids(), &[("half a pixel in x", CAMERA), ("every fifth is lost", BEAM)]);
+    let found = few_pyramids().diagnosis(&wrong.candidate).unwrap();
+    assert_eq!(found.unexplained, [BEAM]);
+    assert!(found.sentence().ends_with("the wrong rays of beam-1 have another cause"), "{}", found.sentence());
+}
+
+#[test]
+fn too_few_wrong_rays_have_no_reason_but_confirm_one() {
+    // The last column of a beam of four rows is four rays; that of a camera is many.
+    let few = made(few_pyramids(), &[("last column lost", BEAM)]);
+    assert_eq!(few_pyramids().reasons(&few.candidate), [""; 0]);
+    // Two beams of eight pencils: neither is enough by itself, both are, and the camera's reason is confirmed by one.
+    let bench = pyramids_with_pencils(40, 32, 8, 1);
+    let [first, second] = [SensorId::Beam(0), SensorId::Beam(1)];
+    let told = |sensors: &[SensorId]| {
+        let makes: Vec<_> = sensors.iter().map(|sensor| ("faces from 1", *sensor)).collect();
+        bench.reasons(&made(&bench, &makes).candidate)
+    };
+    assert_eq!(told(&[second]), [""; 0]);
+    assert_eq!(told(&[first, second]), ["beam-0, beam-1: faces_shifted"]);
+    assert_eq!(told(&[CAMERA, second]), ["camera, beam-1: faces_shifted"]);
+}
+
+#[test]
+fn a_lost_line_beside_undeclared_single_precision_is_told() {
+    let mut wrong = made(few_pyramids(), &[("last row twice", CAMERA)]);
+    super::one::as_single(&mut wrong.candidate, &mut 0);
+    let last = 31;
+    // The last row repeats the rounded one.
+    for map in &mut wrong.candidate.answers.maps[..1] {
+        for image in [&mut map.range, &mut map.depth, &mut map.cos_incidence].into_iter().flatten() {
+            (0..40).for_each(|i| image.set(i, last, image.at(i, last - 1)));
+        }
+    }
+    let told = few_pyramids().reasons(&wrong.candidate);
+    assert_eq!(told[0], "camera: line_doubled + single_precision");
+}
+
+#[test]
+fn honest_errors_have_no_reason() {
+    for name in ["noise", "some noise", "one wrong face in a thousand", "a face is not there", "a corner is elsewhere"] {
+        for seed in [1, 2] {
+            let mut wrong = Wrong::right(few_pyramids());
+            wrong.make(few_pyramids(), named(name), CAMERA, &mut Random(seed));
+            assert_eq!(few_pyramids().reasons(&wrong.candidate), [""; 0], "{name}");
+        }
+    }
+}
+
+#[test]
+fn numbers_are_told_with_their_value_and_unit() {
+    let told = |name: &str| {
+        let wrong = made(few_pyramids(), &[(name, CAMERA)]);
+        few_pyramids().diagnosis(&wrong.candidate).unwrap().reasons[0].mistakes[0]
+    };
+    assert_eq!(told("half a pixel in x").to_string(), "cx is 19.5 in place of 20 px");
+    let Mistake::Rounded { quantum, .. } = told("lengths rounded") else { panic!() };
+    assert_eq!(quantum, 1e-3);
+}
