@@ -42,7 +42,7 @@ same-bits:
 # The study of docs/designs.md: 150 drives, half an hour on two cores
 designs:
     cargo run --release --bin raypencil -- sweep data/designs/rover.toml --list data/designs/runs.csv \
-        --set terrain.generate.preset=smooth,viking1,pathfinder,crater_field,crevassed,worst --do drive -o out/designs \
+        --set terrain.generate.preset=smooth,viking1,pathfinder,crater_field,crevassed,worst --set drive.rules.start=circle --do drive -o out/designs \
         --chart truth.found_share,beam.0.pitch_down_deg,terrain.generate.preset \
         --chart truth.clear_way_mean_m,beam.0.pitch_down_deg,terrain.generate.preset \
         --chart truth.found_share,beam.thickness_mm,terrain.generate.preset \

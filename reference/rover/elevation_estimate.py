@@ -16,7 +16,6 @@ MIN_POINTS = 20  # fewest points that correct by the ground that stripes meet ag
 MAX_SLOPE = 1.0  # of that ground
 MIN_SHARED_ERROR = 0.005  # m, of all points of a stripe
 MIN_VARIANCE = 1e-8  # square metres
-AGEING = 0.01  # m per m driven since a measurement
 
 
 class Elevation:
@@ -62,8 +61,7 @@ class Elevation:
         near = np.hypot(dx, dy) <= GROUND_RADIUS
         dx, dy = dx[near], dy[near]
         distance = np.hypot(dx, dy)
-        age = way - elevation_map.way[known][near]
-        variance = elevation_map.variance[known][near] + (AGEING * age) ** 2
+        variance = elevation_map.variance_now()[known][near]
         noise = self.noise["proximity"] ** 2
         slopes = self.before[1]
         residual = elevation_map.elevation[known][near] - (self.z - proximity) - slopes[0] * dx - slopes[1] * dy

@@ -2,10 +2,11 @@
 
 import numpy as np
 
+from drift import Drift
+
 UNKNOWN, PROXIMITY, EXTRAPOLATED, MEASURED = 0, 1, 2, 3
 
 # Numbers of the mended rules, each a CHOICE of docs/theory/rover.md.
-AGEING = 0.01  # m of standard deviation for each metre driven since the measurement
 STEP_DEVIATIONS = 3.0  # two elevations differ by a step in the cell beyond this many standard deviations ...
 STEP_SLOPE = 0.35  # ... and this slope between their places
 EQUALLY_HIGH = 1e-9  # m; differences below it are rounding
@@ -30,6 +31,10 @@ class ElevationMap:
         "elevation": (float, np.nan), "source": (np.uint8, UNKNOWN),
         "x": (float, np.nan), "y": (float, np.nan),  # place of the measurement, which is not the grid point
         "variance": (float, np.nan), "way": (float, np.nan),  # of the elevation, and way driven when measured
+        "frame": (float, np.nan),  # in which it was measured
+        # The highest point of all frames, at its own place.
+        "top_x": (float, np.nan), "top_y": (float, np.nan), "top_z": (float, np.nan), "top_variance": (float, np.nan),
+        "top_way": (float, np.nan), "top_frame": (float, np.nan),
         "lowest": (float, np.inf), "highest": (float, -np.inf),  # of all elevations since the map was cleared
         "tied": (bool, False),  # a point near here lay within rounding of the border between two cells
         # Flatter line of sight, towards its sensor: unit vector in plan, and rise over distance. See gaps.py
@@ -39,6 +44,8 @@ class ElevationMap:
     def __init__(self, setup, origin):
         self.spacing, self.points = setup["map"]["spacing"], setup["map"]["points"]
         self.rules = setup["rules"]
+        self.drift = Drift(setup)
+        self.frame_now, self.way_now = 0, 0.0
         self.origin = np.array(origin, float)
         self.centre = np.zeros(2, int)
         self.clear()
@@ -97,6 +104,20 @@ class ElevationMap:
                 setattr(self, name, new)
         self.centre = target
         return steps
+
+    def variance_now(self):
+        """Of each measured elevation, aged to the present frame."""
+        half = self.points // 2
+        x, y = self.place(half, half)
+        away = np.hypot(self.x - x, self.y - y)
+        return self.variance + self.drift.variance(self.frame, self.frame_now, self.way_now - self.way, away)
+
+    def top_variance_now(self):
+        """Of the highest point of each cell, aged to the present frame."""
+        half = self.points // 2
+        x, y = self.place(half, half)
+        away = np.hypot(self.top_x - x, self.top_y - y)
+        return self.top_variance + self.drift.variance(self.top_frame, self.frame_now, self.way_now - self.top_way, away)
 
     # Elevations
 
@@ -169,13 +190,15 @@ class ElevationMap:
         """Writes one new point per cell; by the mended rule it is blended with what was measured there."""
         new = {"x": points[:, 0], "y": points[:, 1], "elevation": points[:, 2],
                "variance": np.maximum(variance, MIN_VARIANCE), "way": np.full(len(i), way),
+               "frame": np.full(len(i), float(self.frame_now)),
                "sight_x": sight[:, 0], "sight_y": sight[:, 1], "sight_slope": sight[:, 2]}
         new = {name: values.copy() for name, values in new.items()}
         met = self.source[j, i] == MEASURED
+        self.keep_tops(j, i, met, new)
         if self.rules["several"] == "mended" and met.any():
             old = {name: getattr(self, name)[j[met], i[met]] for name in new}
             now = {name: values[met] for name, values in new.items()}
-            aged = old["variance"] + (AGEING * (way - old["way"])) ** 2
+            aged = self.variance_now()[j[met], i[met]]
             apart = np.hypot(now["x"] - old["x"], now["y"] - old["y"])
             limit = STEP_DEVIATIONS * np.sqrt(aged + now["variance"]) + STEP_SLOPE * apart
             rise = now["elevation"] - old["elevation"]
@@ -183,7 +206,7 @@ class ElevationMap:
             share = aged / (aged + now["variance"])  # of the new one
             blend = {name: old[name] + share * (now[name] - old[name]) for name in ("x", "y", "elevation")}
             blend["variance"] = np.maximum(share * now["variance"], MIN_VARIANCE)
-            blend["way"] = now["way"]
+            blend["way"], blend["frame"] = now["way"], now["frame"]
             # The flatter of both; of equal ones the new one.
             keep = (old["sight_slope"] < now["sight_slope"]) | np.isnan(now["sight_slope"])
             for name in ("sight_x", "sight_y", "sight_slope"):
@@ -195,6 +218,17 @@ class ElevationMap:
         for name, values in new.items():
             getattr(self, name)[j, i] = values
         self.source[j, i] = MEASURED
+
+    def keep_tops(self, j, i, met, new):
+        """The highest point of each cell over all frames, whatever the cell keeps."""
+        if self.rules["several"] == "paper":
+            self.top_z[j, i] = np.nan
+            return
+        higher = ~met | ~(self.top_z[j, i] >= new["elevation"] - EQUALLY_HIGH)
+        j, i = j[higher], i[higher]
+        for name, of in (("x", "x"), ("y", "y"), ("z", "elevation"), ("variance", "variance"), ("way", "way"),
+                         ("frame", "frame")):
+            getattr(self, "top_" + name)[j, i] = new[of][higher]
 
     def extrapolate(self, j, i, rank):
         """Each new data point is handed to its neighbours that are not themselves new data points."""

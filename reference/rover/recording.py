@@ -21,7 +21,7 @@ NEEDED = {
     "images": ["unit"],
     "extraction": ["detection", "place", "least_rows", "exposures", "lookup"],
     "vehicle": ["wheelbase", "track", "wheel_radius", "wheel_width", "clearance"],
-    "known_noise": ["attitude", "proximity"],
+    "known_noise": ["attitude", "proximity", "position_drift", "position_walk", "heading_drift", "fixes"],
     "map": ["spacing", "points"],
     "rules": ["start", "elevation", "extrapolate", "several", "inconsistency", "gap", "tests"],
     "tests": ["slopes", "closer_share", "obstacle_margin", "clear_margin", "rear_needed", "max_gap_width"],
@@ -35,7 +35,7 @@ WORDS = {
     ("extraction", "exposures"): ["in_turn", "together"],
     ("extraction", "lookup"): ["computed", "table"],
     ("images", "unit"): ["DN", "W/m"],
-    ("rules", "start"): ["origin", "footprint"],
+    ("rules", "start"): ["origin", "footprint", "circle"],
 } | {("rules", rule): ["paper", "mended"]
      for rule in ("elevation", "extrapolate", "several", "inconsistency", "gap", "tests")}
 

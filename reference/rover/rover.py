@@ -9,6 +9,7 @@ from elevation_estimate import Elevation
 from elevation_map import ElevationMap
 from gaps import Shadows
 from geometry import Pose, attitude, slopes_of_plane
+from grid_estimate import elevations_at_grid_points
 from navigator import navigator_map
 from obstacle_map import PointTests, obstacle_map
 from stripes import edges_of
@@ -57,7 +58,7 @@ class Rover:
         self.map = None
         self.way = 0.0
         self.believed_z = believed_z
-        self.stands = []  # x, y, z and slopes of each frame, for the turning circles
+        self.stands = []  # x, y, z and slopes of each frame, for the turning circles of the rule "circle"
         camera = self.setup["camera"]
         self.shape = (camera["height"], camera["width"])
 
@@ -85,9 +86,9 @@ class Rover:
         for exposure in self.exposures(frame):
             image = images.load(self.recording.folder / "images", exposure.stem, self.shape)
             beams = list(range(len(self.setup["beams"]))) if exposure.beam < 0 else [exposure.beam]
-            found, out = edges_of(image, beams, extraction)
-            left_out += out
             rig = self.rig_at(exposure.step)
+            found, out = edges_of(image, beams, extraction, rig)
+            left_out += out
             for e in found:
                 n = len(e.column)
                 edge = np.column_stack([np.full(n, frame), np.full(n, exposure.step), np.full(n, e.beam),
@@ -117,6 +118,7 @@ class Rover:
             self.map = ElevationMap(setup, (x, y))
             self.elevation.start(x, y, rotation)
             self.fill_at_start(x, y, rotation, proximity)
+        self.map.frame_now, self.map.way_now = k, self.way
         if k == 0 and mended:
             pass  # nothing is measured yet, and nothing was driven
         elif mended:
@@ -138,7 +140,8 @@ class Rover:
         pose = Pose((x, y, self.elevation.z), rotation)
         placed = pose.apply(seen[:, 5:8])
         points = np.column_stack([seen, placed])
-        self.stands.append((x, y, self.elevation.z, slopes_of_plane(rotation)))
+        if setup["rules"]["start"] == "circle":
+            self.stands.append((x, y, self.elevation.z, slopes_of_plane(rotation)))
         found = self.map.enter(placed, own + self.elevation.variance, self.way, sight_slopes)
         out = Frame(edges, points, left_out, pose.position, rotation, read, np.sqrt(self.elevation.variance),
                     tuple(int(m) for m in moved), found)
@@ -158,7 +161,7 @@ class Rover:
     def obstacles(self, out, x, y, heading):
         """Obstacle map and navigator map, with a copy of the map they were made from."""
         setup = self.setup
-        out.elevation, out.source = self.map.elevation.copy(), self.map.source.copy()
+        out.elevation, out.source = elevations_at_grid_points(self.map), self.map.source.copy()
         out.corner = tuple(float(v) for v in self.map.place(0, 0))
         gap = setup["rules"]["gap"] == "mended" and setup["tests"]["max_gap_width"] is not None
         shadows = Shadows(self.map, setup["tests"]["max_gap_width"]) if gap else None

@@ -12,6 +12,7 @@ import sys
 import tempfile
 import zlib
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -54,7 +55,8 @@ def setup(rules="mended", **changes):
         "extraction": {"detection": "fixed", "threshold": 400, "place": "centroid", "least_rows": 1,
                        "exposures": "in_turn", "lookup": "computed"},
         "vehicle": {"wheelbase": 1.2, "track": 1.0, "wheel_radius": 0.35, "wheel_width": 0.25, "clearance": 0.35},
-        "known_noise": {"attitude": 0.0, "proximity": 0.0},
+        "known_noise": {"attitude": 0.0, "proximity": 0.0, "position_drift": 0.0, "position_walk": 0.0,
+                        "heading_drift": 0.0, "fixes": None},
         "map": {"spacing": 0.1, "points": 201},
         "rules": {"start": "origin"} | {r: rules for r in ("elevation", "extrapolate", "several", "inconsistency",
                                                           "gap", "tests")},
@@ -162,8 +164,22 @@ def check_stripes():
     check("crossing of the threshold", abs(edges.row[0] - (4.5 + 200 / 600)) < 1e-12)
     (edges,), _ = edges_of(image, [0], rule | {"least_rows": 3})
     check("least_rows", edges.row.tolist() == [4.5])
-    (near, far), out = edges_of(image, [0, 1], rule)
+    rig = SimpleNamespace(points=lambda beam, column, row, middle: (None, row < (50 if beam else 100)))
+    (near, far), out = edges_of(image, [0, 1], rule, rig)
     check("the lowest run is beam 0's", near.row.tolist() == [8.5] and far.row.tolist() == [4.5] and out == 0)
+    image = np.zeros((120, 4), np.uint16)
+    for column, rows in enumerate(((20, 70), (20, 70), (20,), (60, 80))):
+        for row in rows:
+            image[row:row + 2, column] = 900
+    (near, far), out = edges_of(image, [0, 1], rule, rig)
+    check("each run goes to the sheet on which it can lie", far.column.tolist() == [0, 1, 2]
+          and near.column.tolist() == [3, 0, 1, 3] and out == 0)
+    (near, far), out = edges_of(image[:, 2:3], [0, 1], rule, rig)
+    check("what either sheet may have lit is left out", len(near.row) + len(far.row) == 0 and out == 1)
+    image = np.zeros((12, 3), np.uint16)
+    image[2:5, 0] = [400, 1000, 600]
+    image[7:9, 0] = 500
+    image[10:12, 1] = 900
     check("a share of the brightest pixel",
           edges_of(image, [0], rule | {"detection": "share", "threshold": 0.6})[0][0].row.tolist() == [4.5])
     check("Otsu's cut lies between dark and light",
@@ -203,7 +219,7 @@ def flat_map(rules, height, everywhere=True):
     jj, ii = np.mgrid[0:201, 0:201]
     x, y = m.place(ii, jj)
     m.elevation[:], m.source[:] = height(x, y), MEASURED
-    m.x[:], m.y[:], m.variance[:], m.way[:] = x, y, 1e-6, 0
+    m.x[:], m.y[:], m.variance[:], m.way[:], m.frame[:] = x, y, 1e-6, 0, 0
     return tree, m
 
 

@@ -129,25 +129,76 @@ def places(image, first, last, column, level, place):
     return moment / weight
 
 
-def edges_of(image, beams, extraction):
-    """Edges by beam and the number of columns left out. `beams` lists the beams that light the image."""
+def edges_of(image, beams, extraction, rig=None):
+    """Edges by beam and the number of columns left out. `beams` lists the beams that light the image; of several the rig
+    tells which one can have lit a run."""
     first, last, column, level = runs(image, extraction)
     row = places(image, first, last, column, level, extraction["place"])
     pixel_row = np.floor(row).astype(int) if extraction["place"] == "centroid" else last
     order = np.lexsort((column, pixel_row))
-    column, row, pixel_row, last = column[order], row[order], pixel_row[order], last[order]
+    column, row, pixel_row = column[order], row[order], pixel_row[order]
+    first, last = first[order], last[order]
     if len(beams) == 1:
         return [Edges(beams[0], column, row, pixel_row)], 0
-    per_column = np.bincount(column, minlength=image.shape[1])
-    told_apart = per_column == len(beams)
-    left_out = int(((per_column > 0) & ~told_apart).sum())
-    out = []
-    # The lowest run of a column is beam 0's, the next one above it beam 1's.
-    rank = np.empty(len(column), int)
-    by_column = np.lexsort((-last, column))
-    starts = np.cumsum(per_column) - per_column
-    rank[by_column] = np.arange(len(column)) - starts[column[by_column]]
-    for k, beam in enumerate(beams):
-        mine = told_apart[column] & (rank == k)
-        out.append(Edges(beam, column[mine], row[mine], pixel_row[mine]))
-    return out, left_out
+    owner = beams_of_runs(first, last, column, can_light(rig, beams, column, row, extraction), len(beams))
+    left_out = len(np.unique(column[owner < 0]))
+    return [Edges(beam, column[owner == k], row[owner == k], pixel_row[owner == k])
+            for k, beam in enumerate(beams)], left_out
+
+
+def can_light(rig, beams, column, row, extraction):
+    """Whether each run's edge can lie on the plane of each beam: an array of runs by beams."""
+    centroid = extraction["place"] == "centroid"
+    return np.column_stack([rig.points(beam, column, row, centroid)[1] for beam in beams])
+
+
+def beams_of_runs(first, last, column, possible, beams):
+    """The beam of each run, or -1 where more than one beam may have lit it: plane, continuity, order."""
+    n = len(column)
+    by_column = {}
+    for k in sorted(range(n), key=lambda k: (column[k], last[k])):
+        by_column.setdefault(int(column[k]), []).append(k)
+    piece = list(range(n))  # each run is a piece, unless it continues one of the column before
+
+    def touching(k, others):
+        return [o for o in others if first[k] <= last[o] + 1 and first[o] <= last[k] + 1]
+
+    for c, runs in sorted(by_column.items()):
+        before = by_column.get(c - 1, [])
+        for k in runs:
+            met = touching(k, before)
+            if len(met) == 1 and len(touching(met[0], runs)) == 1:
+                piece[k] = piece[met[0]]
+    allowed = {}
+    for k in range(n):
+        mine = set(np.flatnonzero(possible[k]).tolist())
+        allowed[piece[k]] = allowed.get(piece[k], mine) & mine
+    votes = {p: [0] * beams for p in allowed}
+    for runs in by_column.values():
+        if len(runs) == beams and all(possible[k][rank] for rank, k in enumerate(reversed(runs))):
+            for rank, k in enumerate(reversed(runs)):
+                votes[piece[k]][rank] += 1
+    for p, sheets in allowed.items():
+        count = {b: votes[p][b] for b in sheets}
+        best = max(count, key=count.get, default=None)
+        if best is not None and 2 * count[best] > sum(count.values()):
+            allowed[p] = {best}
+    changed = True
+    while changed:
+        changed = False
+        for runs in by_column.values():
+            for at, k in enumerate(runs):
+                if len(allowed[piece[k]]) != 1:
+                    continue
+                (sure,) = allowed[piece[k]]
+                for place, other in enumerate(runs):
+                    sheets = allowed[piece[other]]
+                    rest = {b for b in sheets if (b >= sure if place < at else b <= sure)}
+                    if place != at and len(sheets) > 1 and rest and rest != sheets:
+                        allowed[piece[other]], changed = rest, True
+    owner = np.full(n, -1)
+    for k in range(n):
+        sheets = allowed[piece[k]] or set(np.flatnonzero(possible[k]).tolist())
+        if len(sheets) == 1:
+            (owner[k],) = sheets
+    return owner

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from elevation_map import AGEING, MEASURED, PROXIMITY, UNKNOWN
+from elevation_map import MEASURED, PROXIMITY, UNKNOWN
 from obstacle_map import CLEAR, Verdict
 
 # Axle, share of the wheelbase ahead of Q, side.
@@ -50,7 +50,9 @@ class WheelTests:
         self.x, self.y = np.where(own, m.x, gx), np.where(own, m.y, gy)
         self.z = np.where(self.measured, m.elevation, np.nan)
         # The proximity sensor's cells count as without error.
-        self.variance = np.where(own, m.variance + (AGEING * (way - m.way)) ** 2, 0.0)
+        self.variance = np.where(own, m.variance_now(), 0.0)
+        tall = own & np.isfinite(m.top_z)
+        self.top = [np.where(tall, values, np.nan) for values in (m.top_x, m.top_y, m.top_z, m.top_variance_now())]
         if shadows is None:
             # Without the rule a guess counts as ground.
             guess = np.where(m.source != UNKNOWN, m.elevation, np.nan)
@@ -94,6 +96,10 @@ class WheelTests:
         x, y, z, variance = self.x[w], self.y[w], self.z[w], self.variance[w]
         a, b = axes(x, y)
         offers = [(np.where(inside(a, b), z, np.nan), x, y, a, variance)]
+        tx, ty, tz, tv = (values[w] for values in self.top)
+        ta, tb = axes(tx, ty)
+        with np.errstate(invalid="ignore"):
+            offers.append((np.where(inside(ta, tb), tz, np.nan), tx, ty, ta, tv))
         # The straight lines between neighbouring measured points, cut to the rectangle.
         for di, dj in ((1, 0), (0, 1), (1, 1), (1, -1)):
             height, width = z.shape

@@ -48,7 +48,7 @@ mod table;
 mod text;
 mod version;
 
-pub use axes::{TICK_LENGTH_PX, draw_axes};
+pub use axes::{TICK_LENGTH_PX, axis_from_offset, draw_axes};
 pub use colour::Colour;
 pub use defect_list::{DefectGroup, DefectLine, defect_list};
 pub use document::{Block, Column, Count, Document, Grid, Outcome, Room, markdown_code, markdown_text};

@@ -6,11 +6,12 @@ use std::sync::Arc;
 use indicatif::ProgressBar;
 use raypencil::Progress;
 use raypencil::drive::{
-    self, DriveExtras, DriveJob, DriveProgress, RecordContents, StripeFile, drive_document, write_drive,
+    self, DriveExtras, DriveJob, DriveProgress, RecordContents, StripeFile, drive_document, drive_renderer,
+    write_drive,
 };
 use raypencil::io::{DriveSetup, WaypointFrame, load};
 
-use crate::args::{self, DRIVE_WITH, typed_renderers};
+use crate::args::{self, typed_renderers};
 use crate::console::{Spinner, progress_bar, say};
 use crate::memory::Rates;
 use crate::overwriting::output_folder;
@@ -50,9 +51,10 @@ impl Drop for FrameBar {
 /// # Errors
 /// Renderers, scenes, drives and folders that are refused.
 pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> Result<Outcome, Trouble> {
+    let default = drive_renderer(command.as_printed);
     let names: Vec<String> = match command.both {
         true => ["scanline", "tracer"].map(String::from).to_vec(),
-        false => vec![command.with.clone()],
+        false => vec![command.with.clone().unwrap_or_else(|| default.to_string())],
     };
     let contenders = contenders(&names, &command.switches, 1, registry)?;
     let spinner = Spinner::new();
@@ -86,13 +88,13 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
         arguments.push_str(" --both");
     }
     // The default renderer and `--both` need no `--with`.
-    let is_default = command.both || command.with == DRIVE_WITH;
-    let typed = if is_default { args::DEFAULT_WITH.map(String::from).to_vec() } else { names };
+    let is_default = command.both || names == [default];
+    let typed = if is_default { args::DEFAULT_WITH.map(String::from).to_vec() } else { names.clone() };
     arguments.push_str(&typed_renderers(&typed, &command.switches));
     let trouble = |error| Trouble::Drive { scene: command.scene.scene.clone(), error };
     let mut job = DriveJob::new(&loaded, command.scene.at, arguments).map_err(trouble)?;
     if command.as_printed {
-        job = job.as_printed().map_err(trouble)?;
+        job = job.as_printed(&names.join(",")).map_err(trouble)?;
     }
     for (name, word) in &command.rules {
         job.plan.set_rule(name, word).expect("checked when it was parsed");

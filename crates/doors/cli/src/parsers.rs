@@ -235,15 +235,15 @@ pub(crate) fn switch(text: &str) -> Result<(String, Fidelity), String> {
     }
 }
 
-/// `NAME=paper` or `NAME=mended`, a rule of the rover's maps; `start=footprint` as well.
+/// `NAME=paper` or `NAME=mended`, a rule of the rover's maps; `start=footprint` and `start=circle` as well.
 pub(crate) fn rule(text: &str) -> Result<(String, String), String> {
     let (name, word) = text.split_once('=').unwrap_or((text, ""));
     if !RULE_NAMES.contains(&name) {
         return Err(format!("expected one of {}", RULE_NAMES.join(", ")));
     }
     match (name, word) {
-        (_, "paper" | "mended") | ("start", "footprint") => Ok((name.into(), word.into())),
-        ("start", _) => Err("expected start=paper, start=mended or start=footprint".into()),
+        (_, "paper" | "mended") | ("start", "footprint" | "circle") => Ok((name.into(), word.into())),
+        ("start", _) => Err("expected start=paper, start=mended, start=footprint or start=circle".into()),
         _ => Err(format!("expected {name}=paper or {name}=mended")),
     }
 }
@@ -268,6 +268,15 @@ pub(crate) fn pair<T: FromStr>(text: &str) -> Result<[T; 2], String> {
     let (a, b) = text.split_once(',').ok_or_else(wrong)?;
     let one = |text: &str| text.trim().parse().map_err(|_| wrong());
     Ok([one(a)?, one(b)?])
+}
+
+/// `--window`: x and y of a lower left corner, width and height.
+pub(crate) fn window(text: &str) -> Result<[f64; 4], String> {
+    let numbers: Result<Vec<f64>, String> = text.split(',').map(number).collect();
+    let wrong = || "expected x, y, width and height, such as 1200,3400,24,24".to_string();
+    let window: [f64; 4] = numbers?.try_into().map_err(|_| wrong())?;
+    let is_fit = window.iter().all(|number| number.is_finite()) && window[2] > 0.0 && window[3] > 0.0;
+    is_fit.then_some(window).ok_or_else(wrong)
 }
 
 /// `--ray`: 6, 8 or 9 numbers, as a row of a CSV file.

@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use indicatif::ProgressBar;
+use raypencil::drive::drive_renderer;
 use raypencil::io::{MIN_ABANDONED_AGE, remove_abandoned};
 use raypencil::sweep::{
     Axis, Chart, Finished, Part, Sweep, SweepProgress, SweepTable, Task, default_charts, finish, read_plan,
     run_part, sweep_document, write_sweep,
 };
 
-use crate::args::{self, DEFAULT_WITH, DRIVE_WITH, SweepCommand, SwitchArguments};
+use crate::args::{self, DEFAULT_WITH, SweepCommand, SwitchArguments};
 use crate::console::{progress_bar, say};
 use crate::overwriting::ask_sweep;
 use crate::subject::contenders;
@@ -53,7 +54,7 @@ fn run(command: &args::SweepRun, json: bool, registry: &Registry) -> Result<Outc
     let names: Vec<String> = match (command.with.is_empty(), command.task) {
         (false, _) => command.with.clone(),
         (true, Task::Validate) => DEFAULT_WITH.map(String::from).to_vec(),
-        (true, _) => vec![DRIVE_WITH.to_string()],
+        (true, _) => vec![drive_renderer(command.as_printed).to_string()],
     };
     let (least, most) = if command.task == Task::Validate { (2, usize::MAX) } else { (1, 1) };
     if names.len() > most {

@@ -16,6 +16,9 @@ pub enum DriveError {
          ground: pyramids, facets"
     )]
     NoDrive,
+    /// The scene has a `[drive]` without waypoints, and none were given otherwise.
+    #[error("the drive has no waypoints; expected --to X,Y, or waypoints_m in [drive] (docs/guide/drive.md)")]
+    NoWaypoints,
     /// The flux model's unit is W/m, which no camera can expose.
     #[error(
         "flux model eq1 is in W/m, which no camera can expose; expected radiometric, or a drive without sensor, optics, \

@@ -11,12 +11,11 @@ use crate::run::DriveRun;
 /// Verdict in one sentence.
 pub(crate) fn headline(run: &DriveRun) -> String {
     let frames = counted(run.frames.len() as u64, "frame", "frames");
+    let passes = passes(run);
     match &run.differences {
-        None => format!("{frames} driven."),
+        None => format!("{frames} driven{passes}."),
         Some(differences) if differences.is_identical() => {
-            format!(
-                "Both sides are identical over {frames}: every digital pixel, edge point, map cell and label."
-            )
+            format!("Both sides are identical over {frames}, in every pixel, edge, cell and label{passes}.")
         }
         Some(differences) => {
             let parts: Vec<String> = differences
@@ -25,9 +24,19 @@ pub(crate) fn headline(run: &DriveRun) -> String {
                 .filter(|(_, stage)| stage.differ > 0)
                 .map(|(name, stage)| format!("{} {name}", count(stage.differ)))
                 .collect();
-            format!("The two sides differ in {}.", parts.join(", "))
+            format!("The two sides differ in {}{passes}.", parts.join(", "))
         }
     }
+}
+
+/// How many sectors pass an obstacle, as the end of the headline; empty without an obstacle map.
+fn passes(run: &DriveRun) -> String {
+    let (passed, sectors) = (run.truth.passed(), run.truth.sectors);
+    if sectors == 0 {
+        return String::new();
+    }
+    let verb = if passed == 1 { "passes" } else { "pass" };
+    format!("; {} of {} {verb} an obstacle", count(passed), counted(sectors, "sector", "sectors"))
 }
 
 /// Facts of a drive: each a name and its words.
@@ -80,7 +89,7 @@ pub(crate) fn facts(job: &DriveJob, run: &DriveRun) -> Vec<(&'static str, String
         facts.push(("sectors", format!("{} (frame {frame})", sectors.join(", "))));
     }
     if run.truth.maps > 0 {
-        facts.extend(run.truth.sentences().map(|sentence| ("truth", sentence)));
+        facts.extend(run.truth.sentences().into_iter().map(|sentence| ("truth", sentence)));
     }
     facts.extend(job.notes.iter().map(|note| ("note", note.clone())));
     facts

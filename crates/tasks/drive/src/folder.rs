@@ -12,7 +12,7 @@ use crate::figures::figures;
 use crate::job::DriveJob;
 use crate::labels::label_word;
 use crate::maps::camera_info::camera_info;
-use crate::maps::elevations::{elevation_image, height_grid, source_image};
+use crate::maps::elevations::{elevation_image, error_image, height_grid, key_lines, source_image};
 use crate::maps::obstacle_grid::occupancy_grid;
 use crate::maps::occupancy::write_occupancy;
 use crate::maps::ply::write_ply;
@@ -87,10 +87,20 @@ pub fn write_drive(
 
     let named = |name: &str| folder.join(name);
     write_npy(named("local-map.npy"), &[&elevation_image(&run.map)])?;
+    write_npy(named("local-map-error.npy"), &[&error_image(&run.map)])?;
+    write_atomically(named("local-map-keys.txt"), |file| file.write_all(key_lines(&run.map).as_bytes()))?;
     write_npy(named("local-map-source.npy"), &[&source_image(&run.map)])?;
     write_geotiff(named("local-map.tif"), &height_grid(&run.map))?;
     write_ply(named("edge-points.ply"), &run.points)?;
-    files.extend(["local-map.npy", "local-map-source.npy", "local-map.tif", "edge-points.ply"].map(named));
+    let maps = [
+        "local-map.npy",
+        "local-map-error.npy",
+        "local-map-keys.txt",
+        "local-map-source.npy",
+        "local-map.tif",
+        "edge-points.ply",
+    ];
+    files.extend(maps.map(named));
     if let Some((frame, obstacles, _)) = &run.obstacles {
         let pose = run.frames.iter().find(|one| one.index == *frame).map_or(run.believed, |one| one.believed);
         let grid = occupancy_grid(&run.map, obstacles, &job.plan.grid, &job.plan.vehicle, &pose);

@@ -42,7 +42,7 @@
 //! let job = DriveJob::new(&load_text(scene, "small")?, None, "small.toml".into())?;
 //! let run = drive(&job, &[&Scanline::default()], &Silent)?;
 //! // 0.6 m at 0.3 m/s take 2 s: 7 frames at 3 per second, both ends included.
-//! assert!(drive_document(&job, &run).screen().ends_with("\n7 frames driven.\n"));
+//! assert!(drive_document(&job, &run).screen().ends_with("\n7 frames driven; 0 of 31 sectors pass an obstacle.\n"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -80,7 +80,7 @@ pub use differences::{Differences, FluxDifferences, StageDifferences};
 pub use document::{drive_document, drive_json};
 pub use error::DriveError;
 pub use folder::{WrittenDrive, write_drive};
-pub use job::DriveJob;
+pub use job::{DriveJob, drive_renderer};
 pub use maps::camera_info::camera_info;
 pub use maps::obstacle_grid::occupancy_grid;
 pub use maps::occupancy::{Occupancy, OccupancyGrid, occupancy_files, write_occupancy};

@@ -23,7 +23,7 @@ use crate::recording::{RecordContents, Recording};
 use crate::renderer_drive::{ExposedFrame, RendererDrive};
 use crate::sector_truth::{SectorTruth, TrueGround};
 use crate::sun::Sun;
-use crate::warnings::{at_the_start, nothing_measured};
+use crate::warnings::{at_the_start, nothing_measured, start_too_steep};
 
 /// Maximum number of animation frames: a few megabytes.
 const MAX_ANIMATION_FRAMES: u64 = 60;
@@ -215,8 +215,17 @@ pub fn drive_with(
 
         let frame = &mut exposed.frame;
         let believed = frame.believed;
+        let start = Instant::now();
+        let judged = match (&frame.obstacles, first.swept()) {
+            (Some((map, _)), Some(swept)) => {
+                let ground = TrueGround { faces: &faces, heights: first.ground(), swept };
+                truth.add(&map.sectors, first.map(), &ground, &job.plan, &frame.stance.pose())
+            }
+            _ => Vec::new(),
+        };
+        judging += start.elapsed();
         if let Some(recording) = &mut recording {
-            recording.frame(job, frame, first.map()).map_err(FolderError::from)?;
+            recording.frame(job, frame, &judged, first.map()).map_err(FolderError::from)?;
         }
         history.add(frame, first.map());
         edge_points += frame.measured.len() as u64;
@@ -229,12 +238,6 @@ pub fn drive_with(
         }));
         if let Some((map, vectors)) = &frame.obstacles {
             obstacles = Some((frame.index, map.clone(), vectors.clone()));
-            let start = Instant::now();
-            if let Some(swept) = first.swept() {
-                let ground = TrueGround { faces: &faces, heights: first.ground(), swept };
-                truth.add(&map.sectors, first.map(), &ground, &job.plan, &frame.stance.pose());
-            }
-            judging += start.elapsed();
         }
         let start = Instant::now();
         if frame.index % animation_step == 0 || frame.index + 1 == planned {
@@ -273,6 +276,7 @@ pub fn drive_with(
     let (air, model) = (job.plan.atmosphere, job.plan.flux_model);
     let scene = job.plan.rig.scene(Arc::clone(&job.mesh), at_start, air, model)?;
     let mut warnings = at_the_start(&scene);
+    warnings.extend(start_too_steep(&job.plan, &at_start));
     let whereabouts = Whereabouts::of(&scene, Some(&at_start));
     let plan = survey_plan(&scene, Some(&at_start));
     warnings.extend(nothing_measured(edge_points));

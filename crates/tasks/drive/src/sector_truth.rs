@@ -26,6 +26,13 @@ pub struct NotFound {
     pub outside: u64,
 }
 
+impl NotFound {
+    /// Number of all.
+    pub fn all(self) -> u64 {
+        self.hidden + self.not_swept + self.outside
+    }
+}
+
 /// Why an obstacle that stripes swept and nothing hid was called clear.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Missed {
@@ -42,6 +49,31 @@ impl Missed {
     pub fn all(self) -> u64 {
         self.by_errors + self.by_spacing + self.by_rule
     }
+}
+
+/// What a sector of an obstacle map is worth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Judgement {
+    /// Testing stopped at the true obstacle.
+    Found,
+    /// Called clear beyond the true obstacle.
+    Passed,
+    /// Called an obstacle before any true one.
+    False,
+    /// Ends unknown before any true obstacle.
+    Unknown,
+    /// Clear to its last radius, and truly so.
+    Clear,
+    /// The ground ends before the sector does.
+    OffGround,
+}
+
+/// A sector against the truth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct JudgedSector {
+    pub judgement: Judgement,
+    /// First radius at which the vehicle cannot stand, metres. `None`: it can up to the last one, or the ground ends.
+    pub true_radius: Option<f64>,
 }
 
 /// Counts of the sectors of obstacle maps against the truth. Each sector of each map counts once.
@@ -106,8 +138,7 @@ enum First {
 }
 
 impl SectorTruth {
-    /// Adds an obstacle map that a vehicle with the true pose `global_from_vehicle` made of `map`, believing to be at
-    /// `believed`.
+    /// Adds an obstacle map that a vehicle with the true pose `global_from_vehicle` made of `map`, and judges its sectors.
     pub(crate) fn add(
         &mut self,
         sectors: &[SectorEnd],
@@ -115,19 +146,27 @@ impl SectorTruth {
         ground: &TrueGround,
         plan: &DrivePlan,
         global_from_vehicle: &Pose,
-    ) {
+    ) -> Vec<JudgedSector> {
         self.maps += 1;
         let mut dense: Option<[ElevationMap; 2]> = None;
+        let mut judged = Vec::with_capacity(sectors.len());
         for (index, end) in sectors.iter().enumerate() {
             self.sectors += 1;
             let first = first_obstacle(index as u32, ground.faces, plan, global_from_vehicle);
             let finds = |maps: &mut Option<[ElevationMap; 2]>| {
                 maps.get_or_insert_with(|| true_maps(map, ground.heights, global_from_vehicle)).clone()
             };
-            self.add_sector(index as u32, end, &first, ground, plan, global_from_vehicle, &mut || {
-                finds(&mut dense)
-            });
+            let judgement =
+                self.add_sector(index as u32, end, &first, ground, plan, global_from_vehicle, &mut || {
+                    finds(&mut dense)
+                });
+            let true_radius = match first {
+                First::Obstacle { radius, .. } => Some(radius),
+                First::Edge { .. } | First::None => None,
+            };
+            judged.push(JudgedSector { judgement, true_radius });
         }
+        judged
     }
 
     fn add_sector(
@@ -139,7 +178,7 @@ impl SectorTruth {
         plan: &DrivePlan,
         global_from_vehicle: &Pose,
         true_maps: &mut dyn FnMut() -> [ElevationMap; 2],
-    ) {
+    ) -> Judgement {
         let step = plan.grid.step;
         // Radii are multiples of a step: half a step on either side of the limit keeps rounding out.
         let within = 1.5 * step;
@@ -147,7 +186,7 @@ impl SectorTruth {
         let (radius, obstruction) = match first {
             First::Edge { radius } if last_clear > *radius - 0.5 * step => {
                 self.off_ground += 1;
-                return;
+                return Judgement::OffGround;
             }
             First::Obstacle { radius, obstruction } => (*radius, Some(obstruction)),
             First::Edge { .. } | First::None => (f64::INFINITY, None),
@@ -157,6 +196,7 @@ impl SectorTruth {
         if end.label == Label::Obstacle && end.radius < radius - within {
             self.false_obstacle += 1;
             self.false_before += u64::from(obstruction.is_some());
+            Judgement::False
         } else if let Some(obstruction) = obstruction.filter(|_| last_clear > radius + within) {
             let swept = obstruction.points.iter().map(|&point| ground.swept.at(point)).max();
             match swept.unwrap_or(Swept::Never) {
@@ -184,10 +224,17 @@ impl SectorTruth {
                     }
                 }
             }
+            Judgement::Passed
         } else {
             match (end.label, end.missing) {
-                (Label::Obstacle, _) => self.found += 1,
-                (Label::Visibility, _) => self.clear += 1,
+                (Label::Obstacle, _) => {
+                    self.found += 1;
+                    return Judgement::Found;
+                }
+                (Label::Visibility, _) => {
+                    self.clear += 1;
+                    return Judgement::Clear;
+                }
                 (Label::Unknown, Some(Missing { reason: MissingReason::MayHide, .. })) => {
                     self.unknown_may_hide += 1;
                 }
@@ -199,7 +246,14 @@ impl SectorTruth {
                 }
                 (Label::Unknown, _) => self.unknown_not_measured += 1,
             }
+            Judgement::Unknown
         }
+    }
+
+    /// Number of sectors that were called clear beyond a true obstacle, for whatever reason: a vehicle that believed them
+    /// would have met it.
+    pub fn passed(&self) -> u64 {
+        self.missed.all() + self.not_found.all()
     }
 
     /// Share of the sectors with an obstacle that stripes swept and nothing hid in which it was missed, of 1.
@@ -212,13 +266,13 @@ impl SectorTruth {
         self.false_obstacle as f64 / self.sectors.max(1) as f64
     }
 
-    pub(crate) fn sentences(&self) -> [String; 2] {
+    pub(crate) fn sentences(&self) -> Vec<String> {
         let Self { missed, not_found, .. } = self;
         let unknown = self.unknown_not_measured
             + self.unknown_may_hide
             + self.unknown_near_limit
             + self.unknown_beyond_map;
-        [
+        let mut sentences = vec![
             format!(
                 "of {} sectors {} end at a true obstacle, {} at a false one, {} unknown, {} are clear",
                 count(self.sectors),
@@ -228,11 +282,24 @@ impl SectorTruth {
                 count(self.clear),
             ),
             format!(
-                "{} miss an obstacle that stripes swept, {} pass one that could not be seen",
+                "{} pass a true obstacle: {} miss one that stripes swept, {} pass one that could not be seen",
+                count(self.passed()),
                 count(missed.all()),
-                count(not_found.hidden + not_found.not_swept + not_found.outside),
+                count(not_found.all()),
             ),
-        ]
+        ];
+        if self.passed() > 0 {
+            sentences.push(format!(
+                "missed by errors {}, spacing {}, rule {}; not seen: hidden {}, not swept {}, outside {}",
+                count(missed.by_errors),
+                count(missed.by_spacing),
+                count(missed.by_rule),
+                count(not_found.hidden),
+                count(not_found.not_swept),
+                count(not_found.outside),
+            ));
+        }
+        sentences
     }
 }
 

@@ -90,6 +90,7 @@ fn truth(truth: &SectorTruth) -> Value {
         "sectors": truth.sectors,
         "with_obstacle": truth.with_obstacle,
         "found": truth.found,
+        "passed": truth.passed(),
         "missed": {
             "by_errors": truth.missed.by_errors,
             "by_spacing": truth.missed.by_spacing,

@@ -140,7 +140,8 @@ impl Chart {
         let from_above = |tick: Tick| Tick { at: 1.0 - tick.at, ..tick };
         let rows: Vec<Tick> = y_scale.ticks(6).into_iter().map(from_above).collect();
         let title = format!("{} against {}", self.result, self.parameter);
-        let longest = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
+        // The key has the parameter's own name above those of its values.
+        let longest = names.iter().chain(&self.lines).map(|name| name.chars().count()).max().unwrap_or(0);
         let key_width = if by.is_some() { 60 + 8 * longest.max(12) as u32 } else { 0 };
         let mut drawing = Drawing::new(PAGE_WIDTH + key_width, PAGE_HEIGHT, &title);
         let [left, above] = CORNER;

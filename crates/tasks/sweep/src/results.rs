@@ -39,6 +39,7 @@ pub(crate) fn main_results(task: Task) -> &'static [&'static str] {
         Task::Render => &["camera.hits", "beam-0.visible_share", "beam-0.lit_pixels", "beam-0.flux_w"],
         Task::Drive => &[
             "truth.found_share",
+            "truth.passed",
             "truth.missed_share",
             "truth.false_share",
             "truth.clear_way_mean_m",
@@ -65,6 +66,8 @@ pub(crate) fn drive_results(summary: &Value) -> Vec<Named> {
     let shares = [
         // Of the sectors with an obstacle, how many end at it.
         ("truth.found_share", share(found, number("truth.with_obstacle"))),
+        // Of the sectors with an obstacle, how many are called clear beyond it, for whatever reason.
+        ("truth.passed_share", share(number("truth.passed"), number("truth.with_obstacle"))),
         // Of the obstacles that were swept and decided, how many the rover would have driven into.
         ("truth.missed_share", share(missed, found + missed)),
         ("truth.false_share", share(number("truth.false_obstacle"), sectors)),
@@ -155,7 +158,7 @@ mod tests {
         let summary = json!({
             "format": "raypencil-drive", "stages": [{ "seconds": 1.5 }], "frames": 7, "warnings": ["a", "b"],
             "truth": {
-                "sectors": 50, "with_obstacle": 40, "found": 30, "false_obstacle": 5, "clear_way_m": 100.0,
+                "sectors": 50, "with_obstacle": 40, "found": 30, "passed": 12, "false_obstacle": 5, "clear_way_m": 100.0,
                 "missed": { "by_errors": 4, "by_spacing": 5, "by_rule": 1 }
             }
         });
@@ -166,6 +169,7 @@ mod tests {
             (Some(json!(7)), Some(json!(2)), Some(json!(30)))
         );
         assert_eq!(of("truth.found_share"), Some(json!(0.75)));
+        assert_eq!(of("truth.passed_share"), Some(json!(0.3)));
         assert_eq!(of("truth.missed_share"), Some(json!(0.25)));
         assert_eq!(of("truth.false_share"), Some(json!(0.1)));
         assert_eq!(of("truth.clear_way_mean_m"), Some(json!(2.0)));

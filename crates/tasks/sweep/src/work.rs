@@ -108,7 +108,7 @@ impl<'a> Worker<'a> {
         let driven = || {
             let mut job = DriveJob::new(loaded, None, arguments)?;
             if self.sweep.as_printed {
-                job = job.as_printed()?;
+                job = job.as_printed(&self.sweep.renderers.join(","))?;
             }
             let renderers: Vec<_> =
                 self.contenders.iter().map(|contender| contender.renderer.as_ref()).collect();

@@ -9,6 +9,7 @@ use raypencil_terrain::HeightIndex;
 
 use crate::drive_plan::{DrivePlan, ExposureMode, PointLookup};
 use crate::elevation_map::Inconsistency;
+use crate::known_drift::KnownDrift;
 use crate::local_mapper::{LocalMapper, Mapping, MissionStart};
 use crate::localisation::{Localisation, LocalisationReading};
 use crate::mapper::{KnownNoise, MapUpdate, StripePoint};
@@ -19,7 +20,7 @@ use crate::route::{Route, RoutePose};
 use crate::rules::Rule;
 use crate::scan::ScanReason;
 use crate::stripe::EdgePoint;
-use crate::stripe_extractor::{CameraImage, Exposure, OwnExtraction, StripeExtractor};
+use crate::stripe_extractor::{CameraImage, Exposure, RigExtraction, StripeExtractor};
 use crate::triangulation::{SheetPlane, Triangulation, TriangulationTable};
 use crate::true_vehicle::TrueVehicle;
 use crate::vehicle::Stance;
@@ -70,8 +71,8 @@ pub struct DriveFrame {
     pub edges: Vec<FoundEdge>,
     /// Number of measured points.
     pub points: usize,
-    /// Number of image columns that were left out: with [`ExposureMode::Together`], those that hold light but not
-    /// exactly one run per beam.
+    /// Number of image columns with light that was left out: with [`ExposureMode::Together`], since more than one beam may
+    /// have lit it.
     pub columns_left_out: usize,
     /// Measured points, beam by beam, in row-major order of the image. In a scan: position by position.
     pub measured: Vec<MeasuredPoint>,
@@ -161,7 +162,7 @@ impl Drive {
         }
         true_vehicle.check_route(&plan.route)?;
         let tables = plan.rig.beams.iter().map(|_| OnceLock::new()).collect();
-        let extractor = OwnExtraction { extraction: plan.extraction, beams: plan.rig.beams.len() };
+        let extractor = RigExtraction::new(plan.extraction, &plan.rig, &plan.sweep);
         Ok(Self {
             plan,
             extractor: Arc::new(extractor),
@@ -238,7 +239,11 @@ impl Drive {
             seen_from: Some([camera, position(measured.beam)]),
         };
         let points = measured.iter().map(stripe_point).collect();
-        let noise = KnownNoise { attitude: errors.attitude_noise, proximity: errors.proximity_noise };
+        let noise = KnownNoise {
+            attitude: errors.attitude_noise,
+            proximity: errors.proximity_noise,
+            drift: KnownDrift::of(&errors, self.plan.route.frame_rate),
+        };
         // CHOICE: the first elevation is the true one.
         let elevation = stance.position.z;
         let start = || MissionStart { vehicle, size: map, rules: map_rules, noise, sensed, elevation };

@@ -20,7 +20,8 @@ pub enum ExposureMode {
     /// Each beam is lit alone, in its own exposure. CHOICE: the paper does not say; here no assignment is guessed.
     #[default]
     InTurn,
-    /// All beams are lit in one exposure, and distinguished by their order in the image.
+    /// All beams are lit in one exposure, and distinguished by the planes on which their stripes can lie
+    /// ([`Extraction::edges_by_plane`]).
     Together,
 }
 
@@ -85,20 +86,24 @@ impl DrivePlan {
     /// the table, and the printed rules of the maps. "Current plans for the real system are for the edges to be extracted
     /// every tenth of a second. Since only two lines of stripe data are produced by the SLVS every cycle ..." (§7)
     pub fn as_printed(self) -> Self {
-        let slopes = self.rules.slopes;
+        let TraversabilityRules { slopes, rear_needed, .. } = self.rules;
         Self {
             route: Route { frame_rate: 10.0, ..self.route },
             exposures: ExposureMode::Together,
             extraction: Extraction { place: StripeLocation::Pixel, ..self.extraction },
             lookup: PointLookup::Table,
             map_rules: MapRules::AS_PRINTED,
-            rules: TraversabilityRules { slopes, ..TraversabilityRules::as_printed(&self.vehicle) },
+            rules: TraversabilityRules {
+                slopes,
+                rear_needed,
+                ..TraversabilityRules::as_printed(&self.vehicle)
+            },
             ..self
         }
     }
 
     /// Puts one rule in force by its name, one of [`RULE_NAMES`], and a word: `paper` or `mended`; for `start` also
-    /// `footprint`.
+    /// `footprint` and `circle`.
     ///
     /// # Errors
     /// The words that are expected instead.
@@ -126,7 +131,8 @@ impl DrivePlan {
             self.map_rules.start = match word {
                 "paper" | "mended" => StartRule::Origin,
                 "footprint" => StartRule::Footprint,
-                _ => return Err("paper, mended, footprint".into()),
+                "circle" => StartRule::Circle,
+                _ => return Err("paper, mended, footprint, circle".into()),
             };
             return Ok(());
         }

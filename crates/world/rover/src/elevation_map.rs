@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 use raypencil_scene::{SceneError, check_count, check_range};
 
+use crate::known_drift::KnownDrift;
 use crate::rules::MapRules;
 
 /// Size of an elevation map.
@@ -61,6 +62,18 @@ pub struct Sight {
     pub slope: f64,
 }
 
+/// Highest point that was ever measured in a cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Top {
+    /// The point, global, metres.
+    pub point: DVec3,
+    /// Variance of its elevation when it was measured, square metres.
+    pub variance: f64,
+    /// Odometer of the vehicle and number of the frame then.
+    pub odometer: f64,
+    pub frame: u64,
+}
+
 /// Content of the map at a grid point.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Cell {
@@ -75,12 +88,16 @@ pub(crate) struct Cell {
     pub variance: f64,
     /// Odometer of the vehicle at the last measurement, metres.
     pub odometer: f64,
+    /// Frame of the last measurement.
+    pub frame: u64,
+    /// Highest point of all frames, which the mean of several frames does not lower. `None` without a measurement, and as printed.
+    pub top: Option<Top>,
     /// Flattest line of sight by which it was measured.
     pub sight: Option<Sight>,
     /// Lowest and highest elevation ever measured here, metres; `None` before the first. Extrapolation leaves it.
     pub measured: Option<(f64, f64)>,
-    /// Elevation of the wheels' plane when the vehicle stood over it or beside it, metres. Obstacle tests may use it where nothing was
-    /// measured; it is no elevation of the map.
+    /// Elevation of the wheels' plane when the vehicle stood over it or beside it, metres, by the rule `StartRule::Circle` alone.
+    /// Obstacle tests use it where nothing was measured; it is no elevation of the map.
     pub stood: Option<f64>,
 }
 
@@ -124,8 +141,10 @@ pub struct ElevationMap {
     pub(crate) cells: Vec<Cell>,
     pub(crate) update: u64,
     pub(crate) rules: MapRules,
-    /// Distance driven so far, metres. Measurements age with it.
+    /// Distance driven so far, metres. Measurements age with it, and with the frames.
     pub(crate) odometer: f64,
+    pub(crate) frame: u64,
+    pub(crate) drift: KnownDrift,
 }
 
 impl ElevationMap {
@@ -145,7 +164,8 @@ impl ElevationMap {
     pub fn with_rules(size: MapSize, origin: DVec2, rules: MapRules) -> Self {
         assert!(size.validate("map").is_ok(), "invalid map size: {size:?}");
         let cells = vec![Cell::default(); size.points as usize * size.points as usize];
-        Self { size, origin, centre: GridPoint { i: 0, j: 0 }, cells, update: 0, rules, odometer: 0.0 }
+        let (centre, drift) = (GridPoint { i: 0, j: 0 }, KnownDrift::default());
+        Self { size, origin, centre, cells, update: 0, rules, odometer: 0.0, frame: 0, drift }
     }
 
     /// Size of the map.
@@ -224,7 +244,7 @@ impl ElevationMap {
         }
     }
 
-    /// Adds to the distance driven, metres. What was measured before becomes less certain with it.
+    /// Adds to the distance driven, metres.
     pub fn drive(&mut self, distance: f64) {
         self.odometer += distance;
     }
@@ -264,6 +284,7 @@ impl ElevationMap {
                 place: point.truncate(),
                 variance: standard_error * standard_error,
                 odometer: self.odometer,
+                frame: self.frame,
                 stood: self.cells[index].stood,
                 ..Cell::default()
             };

@@ -6,14 +6,15 @@
 //! these modules in order:
 //!
 //! 1. `stripe` (with `otsu`): [`Extraction`] finds the lower edges of the light stripes in an image; `stripe_extractor`:
-//!    [`StripeExtractor`], for algorithms in its place;
+//!    [`StripeExtractor`], for algorithms in its place; `stripe_assignment`: the beam of each stripe, if several are lit
+//!    in one image;
 //! 2. `triangulation` (with `rig`): [`Triangulation`] turns edge pixels into points of the beam's lower edge plane, in
 //!    the vehicle frame;
 //! 3. `localisation` (with `vehicle` and `noise_stream`): [`Localisation`] measures position, attitude and the distance
 //!    to the ground, with errors;
 //! 4. `mapper`, `elevation_map` and `map_update`: [`Mapper`] estimates the vehicle's pose (mended: `elevation_estimate`,
-//!    `registration`), moves the [`ElevationMap`] and enters the points; `local_mapper`: [`LocalMapper`], for maps in its
-//!    place;
+//!    `registration`), moves the [`ElevationMap`] and enters the points; `known_drift`: what ages with the way; `grid_estimate`: the map at its
+//!    grid points; `local_mapper`: [`LocalMapper`], for maps in its place;
 //! 5. `obstacle_map`, `traversability`, `wheel_tests` and `gap`: in one of [`FRAMES_PER_OBSTACLE_MAP`] frames, [`ObstacleMap`] tests a
 //!    radial grid by [`TraversabilityRules`];
 //! 6. `navigator_map`: [`navigator_map()`] joins the ends of the sectors by labelled vectors.
@@ -61,6 +62,8 @@ mod drive_plan;
 mod elevation_estimate;
 mod elevation_map;
 mod gap;
+mod grid_estimate;
+mod known_drift;
 mod local_mapper;
 mod localisation;
 mod map_update;
@@ -75,6 +78,7 @@ mod route;
 mod rules;
 mod scan;
 mod stripe;
+mod stripe_assignment;
 mod stripe_extractor;
 mod traversability;
 mod triangulation;
@@ -87,6 +91,8 @@ pub use drive::{CameraPipeline, Drive, DriveFrame, FoundEdge, MeasuredPoint};
 pub use drive_plan::{DrivePlan, ExposureMode, PointLookup, RULE_NAMES};
 pub use elevation_map::{ElevationMap, ElevationSource, GridPoint, Inconsistency, MapSize, Sight};
 pub use gap::{GapRule, MapWithShadows};
+pub use grid_estimate::GridEstimate;
+pub use known_drift::KnownDrift;
 pub use local_mapper::{LocalMapper, MissionStart};
 pub use localisation::{Localisation, LocalisationErrors, LocalisationReading, PositionFixes};
 pub use map_update::MapPoint;
@@ -101,7 +107,7 @@ pub use route::{Route, RoutePose};
 pub use rules::{MapRules, Rule, StartRule};
 pub use scan::{ScanReason, ScanRule, Sweep};
 pub use stripe::{Detection, EdgePoint, Extraction, StripeLocation};
-pub use stripe_extractor::{BeamEdge, CameraImage, Exposure, StripeExtractor, Stripes};
+pub use stripe_extractor::{BeamEdge, CameraImage, Exposure, RigExtraction, StripeExtractor, Stripes};
 pub use traversability::{
     ErrorMargins, Missing, MissingReason, SlopeLimits, Traversability, TraversabilityRules,
     TraversabilityTest, VehiclePart,

@@ -1,8 +1,8 @@
 //! New points in the elevation map: which one a cell keeps, and what its neighbours get. (Paper, §7)
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
-use crate::elevation_map::{Cell, ElevationMap, ElevationSource, GridPoint, Inconsistency, Sight};
+use crate::elevation_map::{Cell, ElevationMap, ElevationSource, GridPoint, Inconsistency, Sight, Top};
 use crate::rules::Rule;
 
 /// Measured point, on its way into the map.
@@ -35,9 +35,9 @@ impl From<DVec3> for MapPoint {
     }
 }
 
-/// Loss of certainty of what was measured, metres per metre driven since. CHOICE: a position that drifts by 1 % on
-/// slopes of 45 degrees, as in the modest errors of `docs/evidence/results.md`.
-const AGEING_M_PER_M: f64 = 0.01;
+/// Slope of the ground at which a displacement in plan becomes an error of its elevation, rise over distance. CHOICE: 45
+/// degrees. What is steeper is an edge, and moves as a whole.
+const AGEING_SLOPE: f64 = 1.0;
 
 /// Two elevations of a cell belong to one surface if they differ by at most this many standard deviations, beyond what
 /// a slope accounts for. CHOICE: three.
@@ -136,19 +136,32 @@ impl ElevationMap {
             place: point.point.truncate(),
             variance: (point.standard_error * point.standard_error).max(MIN_VARIANCE_M2),
             odometer: self.odometer,
+            frame: self.frame,
+            top: None,
             sight: point.sight,
             measured: None,
             stood: before.stood,
         };
-        if self.rules.several == Rule::Paper || before.source != ElevationSource::Measured {
+        if self.rules.several == Rule::Paper {
             return new;
         }
+        let own =
+            Top { point: point.point, variance: new.variance, odometer: self.odometer, frame: self.frame };
+        let new = Cell { top: Some(own), ..new };
+        if before.source != ElevationSource::Measured {
+            return new;
+        }
+        let top = match before.top {
+            Some(top) if top.point.z >= z - HEIGHT_ROUNDING_M => Some(top),
+            _ => Some(own),
+        };
         let aged = before.variance + self.ageing_variance(before);
         let rise = new.elevation - before.elevation;
         let by_slope = MAX_SURFACE_SLOPE * (new.place - before.place).length();
         if rise.abs() > GATE_DEVIATIONS * (aged + new.variance).sqrt() + by_slope {
             // There is a step in the cell, and its top decides what a wheel meets.
-            return if rise > 0.0 { new } else { Cell { update: new.update, ..*before } };
+            let kept = if rise > 0.0 { new } else { Cell { update: new.update, ..*before } };
+            return Cell { top, ..kept };
         }
         // The mean by inverse variances, of the place too: on a plane it stays on the plane.
         let share = aged / (aged + new.variance);
@@ -157,14 +170,26 @@ impl ElevationMap {
             place: before.place + (new.place - before.place) * share,
             variance: (share * new.variance).max(MIN_VARIANCE_M2),
             sight: flatter(new.sight, before.sight),
+            top,
             ..new
         }
     }
 
-    /// Variance that a measurement has gained since it was made, square metres.
+    /// Variance that a measurement has gained since it was made, square metres: the ground has moved in plan against the
+    /// vehicle, by the drift that its sensors are known to have. Nothing with perfect sensors.
     pub(crate) fn ageing_variance(&self, cell: &Cell) -> f64 {
-        let error = AGEING_M_PER_M * (self.odometer - cell.odometer);
-        error * error
+        self.aged(cell.place, cell.odometer, cell.frame)
+    }
+
+    /// Variance of the highest point of a cell now, square metres.
+    pub(crate) fn top_variance(&self, top: &Top) -> f64 {
+        top.variance + self.aged(top.point.truncate(), top.odometer, top.frame)
+    }
+
+    fn aged(&self, place: DVec2, odometer: f64, frame: u64) -> f64 {
+        let (way, away) = (self.odometer - odometer, (place - self.place(self.centre())).length());
+        let moved = self.drift.displacement_variance(frame, self.frame, way, away);
+        AGEING_SLOPE * AGEING_SLOPE * moved
     }
 
     /// As printed: to all neighbours that are not new data points, "even" to those measured before. The last one counts.

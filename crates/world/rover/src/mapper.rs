@@ -5,6 +5,7 @@ use raypencil_scene::Pose;
 
 use crate::elevation_estimate::{Estimate, fitted_ground};
 use crate::elevation_map::{ElevationMap, GridPoint, Inconsistency, MapSize, Sight};
+use crate::known_drift::KnownDrift;
 use crate::localisation::LocalisationReading;
 use crate::map_update::{MapPoint, flatter};
 use crate::registration::elevation_error;
@@ -33,13 +34,15 @@ impl From<DVec3> for StripePoint {
     }
 }
 
-/// Noise of the vehicle's sensors, as its makers state it. Drift and bias are in no data sheet.
+/// Noise and drift of the vehicle's sensors, as its makers state them. A bias is in no data sheet.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct KnownNoise {
     /// Standard deviation of a measured angle, radians.
     pub attitude: f64,
     /// Standard deviation of the proximity sensor, metres.
     pub proximity: f64,
+    /// Drift of position and heading, with which measured ground ages.
+    pub drift: KnownDrift,
 }
 
 /// An elevation map and the estimated pose of the vehicle.
@@ -52,6 +55,8 @@ pub struct Mapper {
     noise: KnownNoise,
     /// Variance of the pose's elevation, square metres.
     variance: f64,
+    /// Number of frames so far.
+    frames: u64,
 }
 
 /// Result of an update of the map.
@@ -88,14 +93,16 @@ impl Mapper {
     ) -> Self {
         let map = ElevationMap::with_rules(size, sensed.position, rules);
         let pose = sensed.attitude.at(sensed.position.extend(elevation));
-        let mut mapper = Self { vehicle, map, pose, noise: KnownNoise::default(), variance: 0.0 };
+        let mut mapper = Self { vehicle, map, pose, noise: KnownNoise::default(), variance: 0.0, frames: 0 };
         mapper.fill_at_start(sensed);
         mapper
     }
 
     /// The same with the noise that the vehicle's sensors are known to have.
-    pub fn with_noise(self, noise: KnownNoise) -> Self {
-        Self { noise, ..self }
+    pub fn with_noise(mut self, noise: KnownNoise) -> Self {
+        self.noise = noise;
+        self.map.drift = noise.drift;
+        self
     }
 
     /// The elevation map.
@@ -154,8 +161,10 @@ impl Mapper {
         if self.map.rules.elevation == Rule::Mended {
             self.register(&points);
         }
-        for (point, elevation) in self.wheel_plane_around(sensed) {
-            self.map.stand_over(point, elevation);
+        if self.map.rules.start == StartRule::Circle {
+            for (point, elevation) in self.wheel_plane_around(sensed) {
+                self.map.stand_over(point, elevation);
+            }
         }
         let (pose, noise, variance) = (self.pose, self.noise, self.variance);
         let points = points.into_iter().map(|point| {
@@ -201,6 +210,8 @@ impl Mapper {
         let displacement = sensed.position - self.pose.position.truncate();
         let attitude = sensed.attitude.at(DVec3::ZERO);
         self.map.drive(displacement.length());
+        self.map.frame = self.frames;
+        self.frames += 1;
         let (elevation, read) = match self.map.rules.elevation {
             Rule::Paper => {
                 let below = self.map.elevation(self.map.nearest(sensed.position));
@@ -248,7 +259,9 @@ impl Mapper {
         let Some(distance) = sensed.proximity else { return };
         let ground = self.pose.position.z - distance;
         match self.map.rules.start {
-            StartRule::Origin => self.map.set_proximity(self.map.nearest(sensed.position), ground),
+            StartRule::Origin | StartRule::Circle => {
+                self.map.set_proximity(self.map.nearest(sensed.position), ground)
+            }
             StartRule::Footprint => self.fill_under_vehicle(sensed, ground),
         }
     }

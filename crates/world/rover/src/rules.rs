@@ -10,7 +10,8 @@ pub enum Rule {
     Mended,
 }
 
-/// Grid points that are known before the first stripe.
+/// What is known of the ground before the first stripe. What the vehicle covers then is measured by stripes later, or
+/// stays unknown, unless one of the last two rules invents it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum StartRule {
     /// The one under the vehicle's origin, by the proximity sensor. "All of the grid points are initialized to 's' at
@@ -21,6 +22,9 @@ pub enum StartRule {
     /// invented elevations are read back while the vehicle drives off them, and spoil its own elevation for the whole
     /// drive.
     Footprint,
+    /// As `Origin`, and the mended obstacle tests take the ground on which the vehicle stands, or could turn on the spot, for
+    /// the plane of its wheels. This is an assumption: a start from a levelled place. A rock beside the vehicle is not seen.
+    Circle,
 }
 
 /// Rules of the elevation map and of the vehicle. Those of the obstacle map are in [`crate::TraversabilityRules`].

@@ -71,6 +71,14 @@ pub struct EdgePoint {
     pub row: f64,
 }
 
+/// A run of lit rows in a column, with its edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct LitRun {
+    pub first: u32,
+    pub last: u32,
+    pub edge: EdgePoint,
+}
+
 /// Columns that are transposed at a time. Tuned: they fit into a cache.
 const COLUMNS_PER_STRIP: usize = 32;
 
@@ -105,41 +113,14 @@ impl Extraction {
     /// assert_eq!(edges, [EdgePoint { i: 1, j: 4, row: 4.5 }]);
     /// ```
     pub fn edges<T: Copy + Into<f64> + Sync>(&self, image: &Image<T>) -> Vec<EdgePoint> {
-        let mut edges: Vec<EdgePoint> = self.columns(image).into_iter().flatten().collect();
+        let runs = self.columns(image).into_iter().flatten();
+        let mut edges: Vec<EdgePoint> = runs.map(|run| run.edge).collect();
         edges.sort_by_key(|edge| (edge.j, edge.i));
         edges
     }
 
-    /// Lower edges of all `beams` in one exposure, beam by beam. In each column the lowest run belongs to beam 0, the
-    /// next one above it to beam 1. Columns that hold light, but not exactly one run per beam, are left out; the second
-    /// value is their number.
-    ///
-    /// CHOICE: no assignment is guessed. The order is correct unless a beam meets the ground so near that its stripe
-    /// lies above the next one. Exposures of one beam at a time do not have this limit.
-    pub fn edges_by_order<T: Copy + Into<f64> + Sync>(
-        &self,
-        image: &Image<T>,
-        beams: usize,
-    ) -> (Vec<Vec<EdgePoint>>, usize) {
-        let mut stripes = vec![Vec::new(); beams];
-        let mut columns_left_out = 0;
-        for column in self.columns(image) {
-            if column.len() == beams {
-                for (stripe, edge) in stripes.iter_mut().zip(column.into_iter().rev()) {
-                    stripe.push(edge);
-                }
-            } else if !column.is_empty() {
-                columns_left_out += 1;
-            }
-        }
-        for stripe in &mut stripes {
-            stripe.sort_by_key(|edge| (edge.j, edge.i));
-        }
-        (stripes, columns_left_out)
-    }
-
-    /// Edges of each column, from the top.
-    fn columns<T: Copy + Into<f64> + Sync>(&self, image: &Image<T>) -> Vec<Vec<EdgePoint>> {
+    /// Runs of each column, from the top.
+    pub(crate) fn columns<T: Copy + Into<f64> + Sync>(&self, image: &Image<T>) -> Vec<Vec<LitRun>> {
         let level = match self.detection {
             Detection::Fixed(level) | Detection::Gradient(level) => Some(level),
             Detection::Share(share) => {
@@ -151,16 +132,20 @@ impl Extraction {
         };
         let Some(level) = level else { return vec![Vec::new(); image.width() as usize] };
         let (width, height) = (image.width() as usize, image.height() as usize);
-        let column = |i: usize, values: &[f64]| -> Vec<EdgePoint> {
+        let column = |i: usize, values: &[f64]| -> Vec<LitRun> {
             let runs = match self.detection {
                 Detection::Gradient(_) => runs_between_edges(values, level),
                 _ => runs_above(values, level),
             };
             let long = runs.into_iter().filter(|run| run.last - run.first + 1 >= self.least_rows as usize);
-            long.map(|run| self.measure(values, i as u32, &run)).collect()
+            let lit = |run: Run| {
+                let [first, last] = [run.first, run.last].map(|row| row as u32);
+                LitRun { first, last, edge: self.measure(values, i as u32, &run) }
+            };
+            long.map(lit).collect()
         };
         // Images are stored row by row: transpose some columns at a time.
-        let strip = |first: usize| -> Vec<Vec<EdgePoint>> {
+        let strip = |first: usize| -> Vec<Vec<LitRun>> {
             let columns = COLUMNS_PER_STRIP.min(width - first);
             let mut values = vec![0.0; columns * height];
             for (j, row) in image.cells().chunks_exact(width.max(1)).enumerate() {

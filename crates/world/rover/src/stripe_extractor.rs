@@ -4,7 +4,10 @@ use std::fmt::Debug;
 
 use raypencil_scene::{Image, SceneError};
 
+use crate::rig::{Pan, Rig};
+use crate::scan::Sweep;
 use crate::stripe::{EdgePoint, Extraction};
+use crate::triangulation::{SheetPlane, Triangulation};
 
 /// Identity of an exposure.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,7 +44,7 @@ pub struct Stripes {
     /// Edges, in the order in which their points enter the map. [`Extraction`] gives them beam by beam, each in row-major
     /// order of the image.
     pub edges: Vec<BeamEdge>,
-    /// Number of image columns that were left out, because their light could not be told apart by beam.
+    /// Number of image columns with light that was left out, because more than one beam may have lit it.
     pub columns_left_out: usize,
 }
 
@@ -61,16 +64,33 @@ pub trait StripeExtractor: Debug + Send + Sync {
     fn stripes(&self, exposure: Exposure, image: &CameraImage) -> Result<Stripes, SceneError>;
 }
 
-/// The rover's own extraction, for a rig with this number of beams.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct OwnExtraction {
-    pub extraction: Extraction,
-    pub beams: usize,
+/// The rover's own extraction, for a rig.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RigExtraction {
+    extraction: Extraction,
+    rig: Rig,
+    /// Angles of a scan's positions.
+    pans: Vec<Pan>,
 }
 
-impl StripeExtractor for OwnExtraction {
+impl RigExtraction {
+    /// The extraction of a plan.
+    pub fn new(extraction: Extraction, rig: &Rig, sweep: &Sweep) -> Self {
+        Self { extraction, rig: rig.clone(), pans: sweep.pans().collect() }
+    }
+
+    /// The planes on which the edges of an exposure lie.
+    fn sheets(&self, exposure: Exposure) -> Vec<Triangulation> {
+        let pan = exposure.step.and_then(|step| self.pans.get(step as usize));
+        let rig = pan.map_or_else(|| self.rig.clone(), |pan| self.rig.panned(*pan));
+        let plane = SheetPlane::for_location(self.extraction.place);
+        (0..rig.beams.len()).map(|beam| Triangulation::new(&rig, beam, plane)).collect()
+    }
+}
+
+impl StripeExtractor for RigExtraction {
     fn stripes(&self, exposure: Exposure, image: &CameraImage) -> Result<Stripes, SceneError> {
-        let Self { extraction, beams } = self;
+        let extraction = &self.extraction;
         let (by_beam, columns_left_out) = match (exposure.beam, image) {
             (Some(beam), image) => {
                 let edges = match image {
@@ -80,9 +100,10 @@ impl StripeExtractor for OwnExtraction {
                 (vec![(beam, edges)], 0)
             }
             (None, image) => {
+                let sheets = self.sheets(exposure);
                 let (edges, left_out) = match image {
-                    CameraImage::Flux(image) => extraction.edges_by_order(image, *beams),
-                    CameraImage::Numbers(image) => extraction.edges_by_order(image, *beams),
+                    CameraImage::Flux(image) => extraction.edges_by_plane(image, &sheets),
+                    CameraImage::Numbers(image) => extraction.edges_by_plane(image, &sheets),
                 };
                 (edges.into_iter().enumerate().collect(), left_out)
             }

@@ -129,9 +129,9 @@ impl TraversabilityRules {
     ///
     /// CHOICE: wheels are upright, at the places that they have on level ground, as the paper's points are.
     ///
-    /// CHOICE: ground that was never measured, but lies in the circle in which the vehicle could turn on the spot now or
-    /// before, is taken to be the plane of its wheels then: the rear wheels of the imaginary vehicle are there, beside the
-    /// real one, when it looks to the side. It is no elevation of the map, so that none is read from it.
+    /// Ground that was never measured leaves a point unknown. Only by [`StartRule::Circle`](crate::StartRule) it is taken to be
+    /// the plane of the wheels, in the circle in which the vehicle could turn on the spot now or before: the rear wheels of
+    /// the imaginary vehicle are there, beside the real one, when it looks to the side.
     pub(crate) fn classify_wheels(
         &self,
         shadows: &MapWithShadows,
@@ -283,6 +283,13 @@ impl Ground<'_> {
                     }
                     if rectangle.within(sample.truncate()).is_some() {
                         inside = (inside.0 + variance, inside.1 + 1);
+                    }
+                    // The mean of several frames is lower than what stands in the cell.
+                    if let Some(top) = self.map.cell(point).top {
+                        let variance = self.map.top_variance(&top);
+                        for hub in [&mut wheel.measured, &mut wheel.supported, &mut wheel.highest] {
+                            rest_on(top.point, variance, hub);
+                        }
                     }
                     // Between neighbouring points the ground is taken to be straight.
                     for (i, j) in FORWARD_NEIGHBOURS {

@@ -41,6 +41,8 @@ pub enum WarningCode {
     BeamsOutOfOrder,
     /// A drive has measured no point of the ground.
     NothingMeasured,
+    /// A drive starts where the vehicle stands steeper than it may.
+    StartTooSteep,
     /// Polygons of the terrain's file cross themselves.
     PolygonsCross,
     /// Polygons of the terrain's file are not planar.
@@ -53,7 +55,7 @@ pub enum WarningCode {
 
 impl WarningCode {
     /// All codes.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::NoHits,
         Self::FewHits,
         Self::BacksFirst,
@@ -67,6 +69,7 @@ impl WarningCode {
         Self::BlindThreshold,
         Self::BeamsOutOfOrder,
         Self::NothingMeasured,
+        Self::StartTooSteep,
         Self::PolygonsCross,
         Self::PolygonsNotPlanar,
         Self::PostsStandOut,
@@ -89,6 +92,7 @@ impl WarningCode {
             Self::BlindThreshold => "blind_threshold",
             Self::BeamsOutOfOrder => "beams_out_of_order",
             Self::NothingMeasured => "nothing_measured",
+            Self::StartTooSteep => "start_too_steep",
             Self::PolygonsCross => "polygons_cross",
             Self::PolygonsNotPlanar => "polygons_not_planar",
             Self::PostsStandOut => "posts_stand_out",

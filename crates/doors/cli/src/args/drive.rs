@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::args::renderers::{DRIVE_WITH, SwitchArguments};
+use crate::args::renderers::SwitchArguments;
 use crate::args::scene::SceneArguments;
 use crate::parsers::{pair, record, rule};
 
@@ -30,12 +30,12 @@ pub(crate) struct Drive {
     pub(crate) to_global: bool,
 
     /// Drive as the paper prints it: ten frames a second, both beams lit together, the flux of equation 1 in W/m, points
-    /// from the table, and the printed rules of the maps.
+    /// from the table, the printed rules of the maps, and a renderer with the paper's approximations.
     #[arg(long)]
     pub(crate) as_printed: bool,
 
     /// Put one rule of the maps in force as printed or mended. Rules: start, elevation, extrapolate, several,
-    /// inconsistency, gap, settle, tests; start also takes footprint. May be repeated.
+    /// inconsistency, gap, settle, tests; start also takes footprint and circle. May be repeated.
     #[arg(long = "rule", value_name = "NAME=paper|mended", value_parser = rule)]
     pub(crate) rules: Vec<(String, String)>,
 
@@ -47,9 +47,9 @@ pub(crate) struct Drive {
     #[arg(long, value_name = "DIR")]
     pub(crate) stripes: Option<PathBuf>,
 
-    /// Renderer of the rover's images.
-    #[arg(long, value_name = "NAME", default_value = DRIVE_WITH)]
-    pub(crate) with: String,
+    /// Renderer of the rover's images; default: scanline, with --as-printed scanline-paper.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) with: Option<String>,
 
     /// Drive with scanline and tracer in lockstep and report how far a difference between them propagates. Exit code 1:
     /// to a pixel of the digital image, or further.

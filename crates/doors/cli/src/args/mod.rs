@@ -41,7 +41,7 @@ pub(crate) use pack::Pack;
 pub(crate) use pages::{ManPages, ReferencePages};
 pub(crate) use probe::Probe;
 pub(crate) use render::Render;
-pub(crate) use renderers::{DEFAULT_WITH, DRIVE_WITH, SwitchArguments, typed_renderers};
+pub(crate) use renderers::{DEFAULT_WITH, SwitchArguments, typed_renderers};
 pub(crate) use scene::{SceneArguments, typed_setting};
 pub(crate) use scene_command::{SceneCommand, SceneInit, SceneShow};
 pub(crate) use sweep::{Sweep, SweepCommand, SweepMerge, SweepRun};

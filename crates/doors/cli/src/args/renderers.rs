@@ -18,9 +18,6 @@ pub(crate) struct SwitchArguments {
 /// The default renderers of a comparison.
 pub(crate) const DEFAULT_WITH: [&str; 2] = ["scanline", "tracer"];
 
-/// The default renderer of a drive. It takes half the time of `tracer`, both on 224 and on 225,280 faces.
-pub(crate) const DRIVE_WITH: &str = "scanline";
-
 /// The arguments that choose renderers, as typed after a scene; empty for the default.
 pub(crate) fn typed_renderers(with: &[String], switches: &SwitchArguments) -> String {
     let mut text = String::new();

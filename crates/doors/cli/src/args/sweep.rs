@@ -52,7 +52,7 @@ pub(crate) struct SweepRun {
     #[arg(long = "do", value_name = "TASK", default_value = "validate", value_parser = task())]
     pub(crate) task: Task,
 
-    /// Renderers; default: scanline,tracer to validate, else scanline.
+    /// Renderers; default: scanline,tracer to validate, else scanline, with --as-printed scanline-paper.
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) with: Vec<String>,
 

@@ -2,7 +2,7 @@
 
 use raypencil::io::{FileError, read_dem, write_terrain_glb};
 use raypencil::terrain::{Ground, MarsGround, PRESET_NAMES};
-use raypencil::{Mesh, Progress as _};
+use raypencil::{Mesh, Progress as _, SceneError};
 use serde_json::{Value, json};
 
 use crate::args::TerrainGenerate;
@@ -33,11 +33,19 @@ pub(crate) fn generate(command: &TerrainGenerate, json: bool) -> Result<Outcome,
     ground.crevasses.count = command.crevasses.unwrap_or(ground.crevasses.count);
     if let Some(coarse) = &command.coarse {
         spinner.stage(&format!("{}: reading", coarse.display()));
-        ground.coarse = Some(read_dem(coarse, None)?.posts);
+        ground.coarse = Some(read_dem(coarse, command.window)?.posts);
     }
     spinner.stage(&format!("{}, seed {}: making faces", command.preset, command.seed));
     let origin = || format!("terrain generate --preset {}", command.preset);
-    let unfit = |source| FileError::Scene { origin: origin(), source };
+    let is_whole = command.coarse.is_some() && command.window.is_none();
+    let unfit = |mut source: SceneError| {
+        // A model of kilometres with posts of centimetres has too many faces: a part of it is what a rover drives over.
+        if is_whole && source.expected.contains("faces in all") {
+            source.expected +=
+                "; --window X,Y,WIDTH,HEIGHT takes a part of the model, --post-spacing wider posts";
+        }
+        FileError::Scene { origin: origin(), source }
+    };
     let mesh = ground.build().and_then(Ground::into_mesh).map_err(unfit)?;
     spinner.stage(&format!("{}: writing", command.output.display()));
     create_folder(&command.output)?;

@@ -222,7 +222,7 @@ def drive(
     to: Sequence[float] | Sequence[Sequence[float]] | None = None,
     *,
     to_global: bool = False,
-    with_: str | Sequence[str] = "scanline",
+    with_: str | Sequence[str] | None = None,
     as_printed: bool = False,
     rules: Mapping[str, str] | None = None,
     switches: Mapping[str, str] | None = None,
@@ -238,7 +238,7 @@ def drive(
         to: waypoints, metres ahead of the vehicle and to its left: ``(3, 0)``, or ``[(3, 0), (3, 2)]``. Default: the route of
             the scene file, or of the built-in ground.
         to_global: the waypoints are global.
-        with_: a renderer; or two in lockstep: ``("scanline", "tracer")``.
+        with_: a renderer; or two in lockstep: ``("scanline", "tracer")``. Default: scanline, as printed scanline-paper.
         as_printed: drive by the paper's own rules.
         rules: rules of the maps: ``{"gap": "paper"}``.
         switches: of the scanline renderer.
@@ -260,6 +260,8 @@ def drive(
         if array.ndim != 2 or array.shape[1] != 2 or not np.isfinite(array).all():
             raise RaypencilError(f"to is {to!r}; expected waypoints of two numbers, such as [(3, 0), (3, 2)]")
         points = [(float(x), float(y)) for x, y in array]
+    if with_ is None:
+        with_ = "scanline-paper" if as_printed else "scanline"
     names = [with_] if isinstance(with_, str) else list(with_)
     folder = None if output is None else os.fspath(output)
     core = _raypencil.DriveCore(

@@ -105,7 +105,7 @@ def sweep(
         runs: mappings from keys to values, one for each run, or a DataFrame with a column for each key. Each is combined with
             every combination of ``settings``.
         do: what is done with each scene: two renderers compared, one rendered, or a drive.
-        with_: the renderers; scanline and tracer to validate, else scanline.
+        with_: the renderers; scanline and tracer to validate, else scanline, as printed scanline-paper.
         as_printed: with ``do="drive"``: as the paper prints it.
         charts: ``"RESULT,KEY"`` or ``"RESULT,KEY,KEY"``: charts to draw beside those of the main results.
         output: a folder for records, table and charts. A sweep that was broken off there goes on.
@@ -123,7 +123,8 @@ def sweep(
     if runs is not None:
         axes.append(_rows(runs))
     if with_ is None:
-        with_ = ["scanline", "tracer"] if do == "validate" else ["scanline"]
+        of_one = "scanline-paper" if as_printed else "scanline"
+        with_ = ["scanline", "tracer"] if do == "validate" else [of_one]
     names = with_.split(",") if isinstance(with_, str) else list(with_)
     folder = os.fspath(output)
     source, of_scene = _source(scene, folder)

@@ -23,9 +23,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use raypencil::Silent;
 use raypencil::drive::{
-    DriveExtras, DriveJob, DriveProgress, DriveRun, RecordContents, drive_document, drive_with, write_drive,
+    DriveExtras, DriveJob, DriveProgress, DriveRun, RecordContents, drive_document, drive_renderer,
+    drive_with, write_drive,
 };
 use raypencil::io::{DriveSetup, WaypointFrame};
+use raypencil::rover::RigExtraction;
 
 use crate::failure::Failure;
 use crate::render::{contenders, renderer_words};
@@ -101,7 +103,7 @@ impl Wish {
             words += " --both";
             return words + &renderer_words(&[], &self.switches, &[]);
         }
-        words + &renderer_words(&self.names, &self.switches, &["scanline"])
+        words + &renderer_words(&self.names, &self.switches, &[drive_renderer(self.as_printed)])
     }
 
     /// The drive, ready to start.
@@ -131,7 +133,7 @@ impl Wish {
         };
         let mut job = DriveJob::new(&loaded, None, self.words(scene)).map_err(named)?;
         if self.as_printed {
-            job = job.as_printed().map_err(named)?;
+            job = job.as_printed(&self.names.join(",")).map_err(named)?;
         }
         for (name, word) in &self.rules {
             job.plan
@@ -188,7 +190,9 @@ impl DriveCore {
             let (frame_rate, is_signed) = (job.plan.route.frame_rate, job.subtract_unlit);
             let (listener, seen) = sync_channel(AHEAD);
             let (taker, frames) = sync_channel(AHEAD);
-            let tee = Tee::new(job.plan.extraction, job.plan.rig.beams.len(), images, listener);
+            let plan = &job.plan;
+            let extraction = RigExtraction::new(plan.extraction, &plan.rig, &plan.sweep);
+            let tee = Tee::new(extraction, images, listener);
             let extras = DriveExtras {
                 extractor: Some(Arc::new(tee) as _),
                 record: wish.output.clone().map(|folder| (folder, contents)),

@@ -5,7 +5,7 @@ use std::sync::mpsc::SyncSender;
 use std::sync::{Mutex, PoisonError};
 
 use raypencil::SceneError;
-use raypencil::rover::{BeamEdge, CameraImage, Exposure, Extraction, StripeExtractor, Stripes};
+use raypencil::rover::{CameraImage, Exposure, RigExtraction, StripeExtractor, Stripes};
 
 /// What was seen in one exposure.
 #[derive(Debug)]
@@ -22,8 +22,7 @@ type Key = (Option<u32>, Option<usize>);
 /// The rover's own extraction.
 #[derive(Debug)]
 pub(super) struct Tee {
-    extraction: Extraction,
-    beams: usize,
+    extraction: RigExtraction,
     keeps_images: bool,
     listener: SyncSender<Seen>,
     /// The frame, and its exposures that were told: with two renderers each comes twice, first that of the first.
@@ -31,31 +30,8 @@ pub(super) struct Tee {
 }
 
 impl Tee {
-    pub(super) fn new(
-        extraction: Extraction,
-        beams: usize,
-        keeps_images: bool,
-        listener: SyncSender<Seen>,
-    ) -> Self {
-        Self { extraction, beams, keeps_images, listener, told: Mutex::default() }
-    }
-
-    fn extracted(&self, exposure: Exposure, image: &CameraImage) -> Stripes {
-        let Self { extraction, beams, .. } = self;
-        let (by_beam, columns_left_out) = match (exposure.beam, image) {
-            (Some(beam), CameraImage::Flux(image)) => (vec![(beam, extraction.edges(image))], 0),
-            (Some(beam), CameraImage::Numbers(image)) => (vec![(beam, extraction.edges(image))], 0),
-            (None, image) => {
-                let (edges, left_out) = match image {
-                    CameraImage::Flux(image) => extraction.edges_by_order(image, *beams),
-                    CameraImage::Numbers(image) => extraction.edges_by_order(image, *beams),
-                };
-                (edges.into_iter().enumerate().collect(), left_out)
-            }
-        };
-        let of_beam =
-            |(beam, edges): (usize, Vec<_>)| edges.into_iter().map(move |edge| BeamEdge { beam, edge });
-        Stripes { edges: by_beam.into_iter().flat_map(of_beam).collect(), columns_left_out }
+    pub(super) fn new(extraction: RigExtraction, keeps_images: bool, listener: SyncSender<Seen>) -> Self {
+        Self { extraction, keeps_images, listener, told: Mutex::default() }
     }
 
     fn is_news(&self, exposure: Exposure) -> bool {
@@ -69,7 +45,7 @@ impl Tee {
 
 impl StripeExtractor for Tee {
     fn stripes(&self, exposure: Exposure, image: &CameraImage) -> Result<Stripes, SceneError> {
-        let stripes = self.extracted(exposure, image);
+        let stripes = self.extraction.stripes(exposure, image)?;
         if self.is_news(exposure) {
             let is_kept = self.keeps_images && exposure.step.is_none();
             let seen = Seen { exposure, image: is_kept.then(|| image.clone()), stripes: stripes.clone() };

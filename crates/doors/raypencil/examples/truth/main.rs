@@ -50,6 +50,7 @@ const PUT_BACK: [(&str, Change); 8] = [
     ("settle as printed", |plan| plan.map_rules.settle = Rule::Paper),
     ("tests as printed", |plan| plan.rules.tests = Rule::Paper),
     ("start by the footprint", |plan| plan.map_rules.start = StartRule::Footprint),
+    ("start on levelled ground", |plan| plan.map_rules.start = StartRule::Circle),
 ];
 
 /// Other settings, each alone.

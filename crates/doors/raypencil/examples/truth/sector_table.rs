@@ -5,16 +5,17 @@ use raypencil::report::count;
 
 /// Head of the table.
 pub const HEAD: &str = "\
-| drive | | sectors | found | missed: errors, spacing, rule | not seen: hidden, not swept, outside | false | unknown: not measured, may hide, near limit | clear | clear way |
-| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |";
+| drive | | sectors | found | passed | missed: errors, spacing, rule | not seen: hidden, not swept, outside | false | unknown: not measured, may hide, near limit | clear | clear way |
+| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |";
 
 /// Row of the table: the drive, the settings that were changed, and the counts.
 pub fn row(truth: &SectorTruth, drive: &str, settings: &str) -> String {
     let SectorTruth { missed, not_found, .. } = truth;
     format!(
-        "| {drive} | {settings} | {} | {} | {} = {} + {} + {} ({}) | {} + {} + {} | {} ({}) | {} + {} + {} | {} | {:.2} m |",
+        "| {drive} | {settings} | {} | {} | {} | {} = {} + {} + {} ({}) | {} + {} + {} | {} ({}) | {} + {} + {} | {} | {:.2} m |",
         count(truth.sectors),
         count(truth.found),
+        count(truth.passed()),
         count(missed.all()),
         count(missed.by_errors),
         count(missed.by_spacing),

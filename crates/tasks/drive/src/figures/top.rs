@@ -1,7 +1,7 @@
 //! Figures 13 and 16: the obstacle map and the navigator map from above, over the elevations of the local map.
 
 use glam::{DVec2, DVec3};
-use raypencil_report::{Anchor, Colour, Drawing, INK, Mark, SOFT, Scale, Tick, draw_axes};
+use raypencil_report::{Anchor, Colour, Drawing, INK, Mark, SOFT, Scale, Tick, axis_from_offset, draw_axes};
 use raypencil_rover::{GridPoint, Label, LabelledVector, ObstacleMap, Vehicle};
 
 use crate::figures::elevation_key::draw_elevation_key;
@@ -120,10 +120,10 @@ impl TopView {
         let (corner, opposite) = (top.page(DVec2::new(low.x, high.y)), top.page(DVec2::new(high.x, low.y)));
         let rim = vec![corner, [opposite[0], corner[1]], opposite, [corner[0], opposite[1]], corner];
         top.drawing.line(rim, SOFT, 1.0);
-        let columns = Scale::linear(low.x, high.x).ticks(7);
-        let rows = Scale::linear(low.y, high.y).ticks(7).into_iter();
-        let rows = rows.map(|tick| Tick { at: 1.0 - tick.at, ..tick }).collect();
-        draw_axes(&mut top.drawing, corner, size.to_array(), columns, rows, ["x, m", "y, m"]);
+        let (columns, across) = axis_from_offset("x", "m", [low.x, high.x], 7);
+        let (rows, upwards) = axis_from_offset("y", "m", [low.y, high.y], 7);
+        let rows = rows.into_iter().map(|tick| Tick { at: 1.0 - tick.at, ..tick }).collect();
+        draw_axes(&mut top.drawing, corner, size.to_array(), columns, rows, [&across, &upwards]);
         let x = left + size.x + 14.0;
         top.draw_label_key(x);
         draw_elevation_key(&mut top.drawing, [x, above + 104.0], elevations, grey);

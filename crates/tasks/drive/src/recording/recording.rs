@@ -15,6 +15,7 @@ use crate::recording::points::PointFiles;
 use crate::recording::poses::PoseFiles;
 use crate::recording::sectors::SectorFiles;
 use crate::recording::setup::setup_json;
+use crate::sector_truth::JudgedSector;
 
 /// Name of the folder in the folder of a drive.
 const FOLDER: &str = "recording";
@@ -79,11 +80,12 @@ impl Recording {
         }
     }
 
-    /// Takes a frame and the map after it.
+    /// Takes a frame, its sectors against the truth, and the map after it.
     pub(crate) fn frame(
         &mut self,
         job: &DriveJob,
         frame: &DriveFrame,
+        judged: &[JudgedSector],
         map: &ElevationMap,
     ) -> Result<(), FileError> {
         if let Some(failure) = self.failure.take() {
@@ -91,7 +93,7 @@ impl Recording {
         }
         self.start_elevation.get_or_insert(frame.stance.position.z);
         self.poses.add(frame, job.plan.route.frame_rate)?;
-        self.sectors.add(frame)?;
+        self.sectors.add(frame, judged)?;
         if let Some(points) = &mut self.points {
             points.add(frame)?;
         }

@@ -6,6 +6,7 @@ use raypencil_files::{FileError, GrowingFile};
 use raypencil_rover::{DriveFrame, MissingReason, SectorEnd, TraversabilityTest, VehiclePart};
 
 use crate::labels::label_word;
+use crate::sector_truth::{JudgedSector, Judgement};
 
 /// The two files, as they grow.
 #[derive(Debug)]
@@ -17,20 +18,24 @@ pub(super) struct SectorFiles {
 impl SectorFiles {
     pub(super) fn create(folder: &Path) -> Result<Self, FileError> {
         let mut sectors = GrowingFile::create(folder.join("sectors.csv"))?;
-        sectors
-            .add("frame,sector,direction_rad,radius_m,x_m,y_m,label,reason,part,missing_x_m,missing_y_m\n")?;
+        sectors.add(
+            "frame,sector,direction_rad,radius_m,x_m,y_m,label,reason,part,missing_x_m,missing_y_m,true_radius_m,judgement\n",
+        )?;
         let mut vectors = GrowingFile::create(folder.join("vectors.csv"))?;
         vectors.add("frame,from_x_m,from_y_m,to_x_m,to_y_m,label\n")?;
         Ok(Self { sectors, vectors })
     }
 
-    pub(super) fn add(&mut self, frame: &DriveFrame) -> Result<(), FileError> {
+    /// `judged` has the sectors of the frame against the truth, or is empty.
+    pub(super) fn add(&mut self, frame: &DriveFrame, judged: &[JudgedSector]) -> Result<(), FileError> {
         let Some((map, vectors)) = &frame.obstacles else { return Ok(()) };
         let index = frame.index;
         for (sector, end) in map.sectors.iter().enumerate() {
             let SectorEnd { direction, radius, point, label, .. } = *end;
             let (x, y, label, reason) = (point.x, point.y, label_word(label), reason(end));
-            self.sectors.add(format!("{index},{sector},{direction},{radius},{x},{y},{label},{reason}\n"))?;
+            let truth = judged.get(sector).map_or_else(|| ",".into(), truth);
+            let line = format!("{index},{sector},{direction},{radius},{x},{y},{label},{reason},{truth}\n");
+            self.sectors.add(line)?;
         }
         for vector in vectors {
             let (from, to, label) = (vector.from, vector.to, label_word(vector.label));
@@ -43,6 +48,20 @@ impl SectorFiles {
         self.sectors.finish()?;
         self.vectors.finish().map(drop)
     }
+}
+
+/// The first radius at which the vehicle truly cannot stand, and what the sector is worth: two fields of the table.
+fn truth(judged: &JudgedSector) -> String {
+    let radius = judged.true_radius.map_or(String::new(), |radius| radius.to_string());
+    let judgement = match judged.judgement {
+        Judgement::Found => "found",
+        Judgement::Passed => "passed",
+        Judgement::False => "false",
+        Judgement::Unknown => "unknown",
+        Judgement::Clear => "clear",
+        Judgement::OffGround => "off_ground",
+    };
+    format!("{radius},{judgement}")
 }
 
 /// Why testing stopped: four fields of the table.

@@ -1,6 +1,8 @@
 //! All that defines the rover's algorithms, without the ground.
 
-use raypencil_rover::{Detection, ExposureMode, OnVehicle, PointLookup, Rule, StartRule, StripeLocation};
+use raypencil_rover::{
+    Detection, ExposureMode, KnownDrift, OnVehicle, PointLookup, Rule, StartRule, StripeLocation,
+};
 use raypencil_scene::Pose;
 use serde_json::{Value, json};
 
@@ -50,6 +52,7 @@ pub(super) fn setup_json(job: &DriveJob, start_elevation: f64) -> String {
     let start = match plan.map_rules.start {
         StartRule::Origin => "origin",
         StartRule::Footprint => "footprint",
+        StartRule::Circle => "circle",
     };
     let rule = |rule: Rule| match rule {
         Rule::Paper => "paper",
@@ -65,6 +68,7 @@ pub(super) fn setup_json(job: &DriveJob, start_elevation: f64) -> String {
             "clear_map": scans.clear_map,
         })
     });
+    let drift = KnownDrift::of(&plan.errors, plan.route.frame_rate);
     let setup = json!({
         "format_version": FORMAT_VERSION,
         "frame_rate": plan.route.frame_rate,
@@ -94,7 +98,14 @@ pub(super) fn setup_json(job: &DriveJob, start_elevation: f64) -> String {
             "wheel_width": vehicle.wheel_width,
             "clearance": vehicle.clearance,
         },
-        "known_noise": { "attitude": plan.errors.attitude_noise, "proximity": plan.errors.proximity_noise },
+        "known_noise": {
+            "attitude": plan.errors.attitude_noise,
+            "proximity": plan.errors.proximity_noise,
+            "position_drift": drift.position,
+            "position_walk": drift.walk,
+            "heading_drift": drift.heading,
+            "fixes": drift.fixes.map(|fixes| json!({ "every_frames": fixes.every_frames, "noise": fixes.noise })),
+        },
         "map": { "spacing": plan.map.spacing, "points": plan.map.points },
         "rules": {
             "start": start,

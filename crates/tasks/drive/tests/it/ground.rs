@@ -69,7 +69,7 @@ pub(crate) fn scene_text(drive: &str) -> String {
         [[beam]]\nposition_m = [0.25, 0.05, 2]\npitch_down_deg = 24\nyaw_left_deg = 2\nroll_right_deg = 1\nrows = 3\n\
         thickness_mm = 6\npower_w = 0.2\n\
         [drive]\nwaypoints_m = [[0.6, 0], [1, 0.15], [1.2, 0.15]]\nframes_per_s = 2\nspeed_m_per_s = 0.3\n\
-        turn_deg_per_s = 17.188733853924695\nobstacles_every_frames = 5\n{drive}\n"
+        turn_deg_per_s = 17.188733853924695\nobstacles_every_frames = 5\nrules = {{ start = \"circle\" }}\n{drive}\n"
     )
 }
 

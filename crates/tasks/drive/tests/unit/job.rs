@@ -3,7 +3,7 @@ use raypencil_rover::{
     TraversabilityRules,
 };
 use raypencil_scene::Scene;
-use raypencil_scene_io::{load, load_text};
+use raypencil_scene_io::{Overrides, Setting, load, load_text};
 use raypencil_sensor::{DarkCurrent, Dust, ImageLength, Psf};
 
 use super::*;
@@ -37,7 +37,7 @@ fn every_key_of_the_drive_is_read() {
         grid_last_m = 4\ngrid_step_m = 0.2\ngrid_half_angle_deg = 45\ngrid_sectors = 19\nvector_large_m = 1\n\
         vector_small_m = 0.4\nscan_from_deg = -5\nscan_to_deg = 30\nscan_inconsistency_m = 0.2\n\
         scan_least_points = 40\nheading_bias_deg = 1\npitch_bias_deg = -2\nroll_bias_deg = 3\nlookup = \"table\"\n\
-        waypoints_frame = \"global\"\n[drive.rules]\nstart = \"footprint\"\nelevation = \"paper\"\ntests = \"paper\"";
+        waypoints_frame = \"global\"\nrear_needed = false\n[drive.rules]\nstart = \"footprint\"\nelevation = \"paper\"\ntests = \"paper\"";
     let job = job(FLAT, all);
     let plan = &job.plan;
     let route = &plan.route;
@@ -55,7 +55,7 @@ fn every_key_of_the_drive_is_read() {
     assert_eq!((plan.vehicle.wheelbase, plan.vehicle.track, plan.vehicle.clearance), (1.5, 1.1, 0.45));
     // Rules that follow from the vehicle's measures follow from the given ones.
     let mended = TraversabilityRules::for_vehicle(&plan.vehicle);
-    let mut rules = TraversabilityRules { tests: Rule::Paper, ..mended };
+    let mut rules = TraversabilityRules { tests: Rule::Paper, rear_needed: false, ..mended };
     (rules.slopes.front, rules.slopes.length) = (0.3, 0.25);
     assert_eq!(plan.rules, rules);
     let half_angle = 45.0_f64.to_radians();
@@ -193,6 +193,15 @@ fn scenes_without_a_drive_are_refused() {
     let still = load_text(&format!("version = 1\n{FLAT}\n"), "still").unwrap();
     let error = DriveJob::new(&still, None, String::new()).unwrap_err();
     assert!(matches!(error, DriveError::NoDrive), "{error}");
+    // Settings of a drive alone give no route, but on a built-in ground, which has one.
+    let set = load_text(&format!("version = 1\n{FLAT}\n[drive]\nscans = false\n"), "set").unwrap();
+    let error = DriveJob::new(&set, None, String::new()).unwrap_err();
+    assert!(error.to_string().contains("no waypoints; expected --to X,Y, or waypoints_m"), "{error}");
+    let settings = vec![Setting::parse("drive.speed_m_per_s=0.6").unwrap()];
+    let built_in = load("pyramids", &Overrides { settings, ..Overrides::default() }).unwrap();
+    let built_in = DriveJob::new(&built_in, None, String::new()).unwrap();
+    assert_eq!((built_in.plan.route.start.x, built_in.plan.route.speed), (-7.5, 0.6));
+    assert_eq!(built_in.plan.route.waypoints, [DVec2::ZERO]);
     // Without a camera a drive by eq1 takes the flux itself, with a threshold that is a share of its maximum. With one it
     // is refused.
     let mut unit = scene(FLAT, SHORT);
@@ -212,7 +221,7 @@ fn scenes_without_a_drive_are_refused() {
         ["sensor = \"cmos\"", "sun = { elevation_deg = 9 }", "subtract_unlit = true", "electronics = {}"]
     {
         let with_camera = job(FLAT, &format!("{SHORT}\n{camera}"));
-        assert!(matches!(with_camera.as_printed(), Err(DriveError::Unit)), "{camera}");
+        assert!(matches!(with_camera.as_printed("scanline"), Err(DriveError::Unit)), "{camera}");
     }
     let endless = job(FLAT, "waypoints_m = [[1e9, 0]]\nscans = false");
     assert!(matches!(endless.frames(), Err(DriveError::Frames)));
@@ -220,13 +229,23 @@ fn scenes_without_a_drive_are_refused() {
 
 #[test]
 fn a_drive_as_printed_is_the_papers_in_all_its_rules() {
-    let printed = job(FLAT, &format!("{SHORT}\nthreshold_share = 0.1")).as_printed().unwrap();
+    let printed =
+        job(FLAT, &format!("{SHORT}\nthreshold_share = 0.1")).as_printed("scanline,tracer").unwrap();
     let plan = &printed.plan;
     assert_eq!((plan.route.frame_rate, plan.exposures), (10.0, ExposureMode::Together));
     assert_eq!((plan.lookup, plan.flux_model), (PointLookup::Table, FluxModel::Eq1));
     assert_eq!(plan.extraction.detection, Detection::Share(0.1));
     assert_eq!((plan.extraction.place, plan.map_rules), (StripeLocation::Pixel, MapRules::AS_PRINTED));
     assert_eq!((plan.rules.gaps, plan.rules.tests), (None, Rule::Paper));
+    let notes = |renderers: &str| job(FLAT, SHORT).as_printed(renderers).unwrap().notes.concat();
+    assert!(notes("scanline-paper").contains("with all of the paper's approximations"));
+    assert!(
+        printed
+            .notes
+            .concat()
+            .contains("rendered by scanline,tracer, as asked for, and not by scanline-paper")
+    );
+    assert_eq!((drive_renderer(true), drive_renderer(false)), ("scanline-paper", "scanline"));
     // It can be driven, by both renderers alike, and finds its stripes: beam 0 is 3.296 m ahead.
     let run = driven(&printed, &["scanline", "tracer"]);
     assert!(run.passes(), "{:?}", run.differences);

@@ -63,7 +63,20 @@ fn counted(x: f64, radius: f64, label: Label, is_seen: bool) -> SectorTruth {
     let pose = Attitude::default().at(DVec3::new(x, 0.0, 0.0));
     let ground = TrueGround { faces: &faces, heights: &heights, swept: &swept };
     let mut truth = SectorTruth::default();
-    truth.add(&[end(radius, label)], &map, &ground, &plan, &pose);
+    let judged = truth.add(&[end(radius, label)], &map, &ground, &plan, &pose);
+    // The judgement of the sector says what its counts say.
+    let counted = match judged[0].judgement {
+        Judgement::Found => truth.found,
+        Judgement::Passed => truth.passed(),
+        Judgement::False => truth.false_obstacle,
+        Judgement::Unknown => truth.unknown_not_measured,
+        Judgement::Clear => truth.clear,
+        Judgement::OffGround => truth.off_ground,
+    };
+    assert_eq!((judged.len(), counted), (1, 1));
+    let expected = (truth.with_obstacle > 0).then_some(2.7 - x);
+    assert!(judged[0].true_radius.zip(expected).is_none_or(|(a, b)| (a - b).abs() < 1e-9), "{judged:?}");
+    assert_eq!(judged[0].true_radius.is_some(), expected.is_some());
     truth
 }
 
@@ -100,11 +113,17 @@ fn clear_beyond_it_by_more_than_a_step_is_missed_if_stripes_swept_it() {
         (beyond.missed, beyond.unknown_not_measured),
         (Missed { by_errors: 1, ..Missed::default() }, 0)
     );
-    assert_eq!(beyond.missed_share(), 1.0);
+    assert_eq!((beyond.missed_share(), beyond.passed()), (1.0, 1));
     assert_eq!(counted(0.0, 4.8, Label::Visibility, true).missed.all(), 1);
     // No stripe came there: it could not be found.
     let unseen = counted(0.0, 4.8, Label::Visibility, false);
     assert_eq!((unseen.missed.all(), unseen.not_found.not_swept, unseen.missed_share()), (0, 1, 0.0));
+    // It is passed all the same, and the sentences say so.
+    assert_eq!((within.passed(), unseen.passed()), (0, 1));
+    let said = unseen.sentences();
+    assert!(said[1].starts_with("1 pass a true obstacle: 0 miss one"), "{said:?}");
+    assert!(said[2].ends_with("not seen: hidden 0, not swept 1, outside 0"), "{said:?}");
+    assert_eq!(within.sentences().len(), 2);
 }
 
 #[test]

@@ -14,25 +14,31 @@ struct Aim {
     pitch_down_deg: f64,
     /// Angle of the normal axis to the left of the vehicle's forward axis, degrees.
     yaw_left_deg: f64,
+    /// Turn about the normal axis, degrees, positive with the right side down.
+    roll_right_deg: f64,
 }
 
 impl Aim {
     fn of(pose: &Pose) -> Self {
         // A sensor looks along its own z axis.
         let along = pose.rotate(DVec3::Z);
+        // Its x is to the right and its y down; without roll x is level.
+        let (right, down) = (pose.rotate(DVec3::X), pose.rotate(DVec3::Y));
         Self {
             position: pose.position,
             pitch_down_deg: libm::atan2(-along.z, along.truncate().length()).to_degrees(),
             yaw_left_deg: libm::atan2(along.y, along.x).to_degrees(),
+            roll_right_deg: libm::atan2(-right.z, -down.z).to_degrees(),
         }
     }
 
     fn words(&self) -> String {
         format!(
-            "at {} m, {} deg down, {} deg left",
+            "at {} m, {} deg down, {} deg left, roll {} deg",
             triple(self.position),
             short(self.pitch_down_deg),
-            short(self.yaw_left_deg)
+            short(self.yaw_left_deg),
+            short(self.roll_right_deg)
         )
     }
 
@@ -41,6 +47,7 @@ impl Aim {
             "position_m": self.position.to_array(),
             "pitch_down_deg": self.pitch_down_deg,
             "yaw_left_deg": self.yaw_left_deg,
+            "roll_right_deg": self.roll_right_deg,
         })
     }
 }
@@ -89,11 +96,14 @@ fn profile_words(profile: Profile) -> String {
 fn camera_words(camera: &Camera) -> String {
     let [across, down] = field_of_view_deg(camera).map(short);
     let [fx, fy] = focal_px(camera).map(short);
-    let [cx, cy] = camera.principal_point.map(short);
+    let [x, y] = camera.principal_point.map(short);
+    // OpenCV and ROS count from the middle of the first pixel.
+    let [cx, cy] = camera.principal_point.map(|at| short(at - 0.5));
     let [px, py] = camera.pixel_pitch.map(|pitch| short(1e6 * pitch));
     format!(
         "{} x {} pixels of {px} x {py} um, focal length {} mm: {across} x {down} deg\n          \
-         fx {fx}, fy {fy}, cx {cx}, cy {cy} px; aperture {} mm; range {} m",
+         fx {fx}, fy {fy}, cx {cx}, cy {cy} px, as OpenCV counts: {x}, {y} from the image's corner\n          \
+         aperture {} mm; range {} m",
         camera.width,
         camera.height,
         short(1e3 * camera.focal_length),
@@ -187,7 +197,8 @@ pub fn scene_json(loaded: &LoadedScene) -> Value {
             "width_px": camera.width,
             "height_px": camera.height,
             "fx_fy_px": focal_px(camera),
-            "cx_cy_px": camera.principal_point,
+            "cx_cy_px": camera.principal_point.map(|at| at - 0.5),
+            "principal_point_px": camera.principal_point,
             "field_of_view_deg": field_of_view_deg(camera),
             "max_range_m": camera.max_range,
         },
@@ -214,10 +225,11 @@ mod tests {
         let words = scene_words(&load("pyramids", &Overrides::default()).unwrap());
         for line in [
             "vehicle   at (0, 0, 0) m of the global frame, heading 0 deg",
-            "camera    at (0.3, 0, 1.5) m, 20 deg down, 0 deg left",
+            "camera    at (0.3, 0, 1.5) m, 20 deg down, 0 deg left, roll 0 deg",
             // 2 atan(512 x 9 um / 8 mm) = 59.88 deg; 8 mm / 9 um = 888.89 pixels.
             "1024 x 1024 pixels of 9 x 9 um, focal length 8 mm: 59.88",
-            "fx 888.888889, fy 888.888889, cx 512, cy 512 px; aperture 2 mm; range 20 m",
+            "fx 888.888889, fy 888.888889, cx 511.5, cy 511.5 px, as OpenCV counts: 512, 512 from the image's corner",
+            "aperture 2 mm; range 20 m",
             "beam 0    at (0.3, 0, 1.8) m, 31 deg down, 0 deg left",
             "beam 1    at (0.3, 0, 2) m, 22 deg down, 0 deg left",
             "fan 60 deg, 5 mm thick, 1024 x 16 pencils on a grid at 100 mm",
@@ -231,15 +243,19 @@ mod tests {
     #[test]
     fn a_turned_rig_on_a_turned_vehicle_keeps_its_own_angles() {
         let text = "version = 1\n[vehicle]\nposition_m = [1, -2]\nheading_deg = 40\n[camera]\nposition_m = [0.3, 0.2, \
-                    1.5]\npitch_down_deg = 25\nyaw_left_deg = -10\nwidth_px = 100\nheight_px = 50\npixel_pitch_um = [9, \
+                    1.5]\npitch_down_deg = 25\nyaw_left_deg = -10\nroll_right_deg = 7\nwidth_px = 100\nheight_px = 50\npixel_pitch_um = [9, \
                     12]\nprincipal_point_px = [40, 30]\n";
         let loaded = raypencil_scene_io::load_text(text, "turned").unwrap();
         let words = scene_words(&loaded);
         assert!(words.contains("heading 40 deg"), "{words}");
-        assert!(words.contains("camera    at (0.3, 0.2, 1.5) m, 25 deg down, -10 deg left"), "{words}");
-        assert!(words.contains("cx 40, cy 30 px"), "{words}");
+        assert!(
+            words.contains("camera    at (0.3, 0.2, 1.5) m, 25 deg down, -10 deg left, roll 7 deg"),
+            "{words}"
+        );
+        assert!(words.contains("cx 39.5, cy 29.5 px, as OpenCV counts: 40, 30 from"), "{words}");
         let json = scene_json(&loaded);
         let down = json["camera"]["aim"]["pitch_down_deg"].as_f64().unwrap();
         assert!((down - 25.0).abs() < 1e-9, "{down}");
+        assert_eq!(json["camera"]["cx_cy_px"], json!([39.5, 29.5]));
     }
 }

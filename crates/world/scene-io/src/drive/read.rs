@@ -6,8 +6,8 @@ use std::ops::RangeInclusive;
 use toml::Spanned;
 
 use raypencil_rover::{
-    Detection, DrivePlan, ExposureMode, PointLookup, PositionFixes, RULE_NAMES, RadialGrid, Rig, ScanRule,
-    StripeLocation, TraversabilityRules, VectorRules, Vehicle,
+    Detection, DrivePlan, ExposureMode, PointLookup, PositionFixes, RULE_NAMES, RadialGrid, Rig, Rule,
+    ScanRule, StripeLocation, TraversabilityRules, VectorRules, Vehicle,
 };
 use raypencil_sensor::{MARS_SEMI_MAJOR_AXIS_AU, PRESET_NAMES, SOLAR_IRRADIANCE_810_NM, Sunlight};
 
@@ -31,7 +31,7 @@ const DEFAULT_OPTICAL_DEPTH: f64 = 0.5;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DriveKeys {
-    waypoints_m: Spanned<Vec<Spanned<Vec<f64>>>>,
+    waypoints_m: Key<Vec<Spanned<Vec<f64>>>>,
     waypoints_frame: Key<String>,
     speed_m_per_s: Key<f64>,
     turn_deg_per_s: Key<f64>,
@@ -53,6 +53,7 @@ pub(crate) struct DriveKeys {
     map_points: Key<i64>,
     obstacles_every_frames: Key<i64>,
     rules: Option<RuleKeys>,
+    rear_needed: Option<Spanned<bool>>,
     slope_front: Key<f64>,
     slope_rear: Key<f64>,
     slope_length: Key<f64>,
@@ -126,7 +127,9 @@ impl Source<'_> {
         let mut frame = WaypointFrame::Vehicle;
         let frames = [("vehicle", WaypointFrame::Vehicle), ("global", WaypointFrame::Global)];
         self.choice(&keys.waypoints_frame, "drive.waypoints_frame", &mut frame, &frames)?;
-        let mut drive = DriveSetup::new(rig, self.waypoints(&keys.waypoints_m)?, frame);
+        // Without any the table only sets how a route is driven that is given elsewhere.
+        let waypoints = keys.waypoints_m.as_ref().map(|list| self.waypoints(list)).transpose()?;
+        let mut drive = DriveSetup::new(rig, waypoints.unwrap_or_default(), frame);
         self.route(keys, &mut drive.plan)?;
         self.light(keys, &mut drive)?;
         self.extraction(keys, &mut drive)?;
@@ -287,6 +290,14 @@ impl Source<'_> {
         plan.rules = TraversabilityRules::for_vehicle(&plan.vehicle);
         if let Some(rules) = &keys.rules {
             self.rules(rules, plan)?;
+        }
+        if let Some(needed) = &keys.rear_needed {
+            plan.rules.rear_needed = *needed.get_ref();
+            if !plan.rules.rear_needed && plan.rules.tests == Rule::Mended {
+                let message = "`drive.rear_needed` is false; expected it only with the paper's tests, rules = { tests = \
+                               \"paper\" }: the mended ones need the ground under every wheel";
+                return Err(self.error(needed.span(), message));
+            }
         }
         let limits = &mut plan.rules.slopes;
         let slopes = [

@@ -355,6 +355,9 @@ fn a_drive_names_its_keys() {
         assert_eq!((problem.message.as_str(), problem.marked()), (message, marked), "{line}");
         assert_eq!(problem.column, line.find(marked).unwrap() + 1, "{line}");
     };
+    let message = "`drive.rear_needed` is false; expected it only with the paper's tests, rules = { tests = \"paper\" }: the \
+                   mended ones need the ground under every wheel";
+    bad("rear_needed = false", "false", message);
     bad("frames_per_s = 0", "0", "`drive.frames_per_s` is 0; expected 0.001 to 10000 per second");
     bad(
         "sensor = \"film\"",

@@ -110,14 +110,21 @@ const MIN_LARGE_EXTENT_M: f64 = 1e3;
 /// millimetres they have faces of hundreds of metres.
 const MIN_COARSE_RATIO: f64 = 0.25;
 
+/// Smallest median side of a face of a terrain that may be in millimetres, metres, tuned: a ground for a rover has faces of a
+/// centimetre and more. Elevation models from orbit have posts some metres apart, in metres.
+const MIN_SIDE_IN_MILLIMETRES_M: f64 = 10.0;
+
 /// Warns if a terrain is kilometres wide and its faces are large beside the sensors' longest range (metres).
 pub fn terrain_too_large(shape: &TerrainShape, longest_range: f64) -> Option<Warning> {
     let extent = shape.extents.max_element();
     let is_large = extent >= MIN_LARGE_EXTENT_M && shape.median_side >= MIN_COARSE_RATIO * longest_range;
     is_large.then(|| {
+        let cause = match shape.median_side >= MIN_SIDE_IN_MILLIMETRES_M {
+            true => "is its file in millimetres?",
+            false => "it has hardly any detail there. `terrain generate --coarse` adds it to an elevation model.",
+        };
         let sentence = format!(
-            "the terrain is {} wide and half of its faces have a side of {} or more, but the sensors see {}: is its \
-             file in millimetres?",
+            "the terrain is {} wide and half of its faces have a side of {} or more, but the sensors see {}: {cause}",
             quantity(extent, "m"),
             quantity(shape.median_side, "m"),
             quantity(longest_range, "m")

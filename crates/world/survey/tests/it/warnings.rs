@@ -180,6 +180,10 @@ fn a_ground_in_millimetres_is_too_large() {
     // 2 km of ground with posts 1 m apart, and 900 m of coarse ground, are just grounds.
     assert_eq!(too_large(&strip(2000, 1.0)), None);
     assert_eq!(too_large(&strip(9, 100.0)), None);
+    // Posts 5 m apart are an elevation model, not millimetres: nobody is asked for its unit.
+    let said = |spacing: f64| too_large(&strip((2000.0 / spacing) as u32, spacing)).unwrap().to_string();
+    assert!(!said(5.0).contains("millimetres") && said(5.0).contains("detail"), "{}", said(5.0));
+    assert!(said(100.0).contains("millimetres"), "{}", said(100.0));
     // The same coarse ground over 1.1 km is not; sensors that see 1 km have all the detail they need.
     assert!(too_large(&strip(11, 100.0)).is_some());
     assert_eq!(terrain_too_large(&TerrainShape::of(&strip(11, 100.0)).unwrap(), 1e3), None);

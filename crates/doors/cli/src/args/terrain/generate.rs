@@ -4,14 +4,16 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::parsers::number;
+use crate::parsers::{number, window};
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   # Ground like that of the Viking 1 site, a square of 10 m.
   raypencil terrain generate --preset viking1 --seed 7 --extent 10 -o out/ground.glb
   # Rocks on an elevation model of your own.
-  raypencil terrain generate --coarse dem.tif --rock-coverage 0.1 -o out/rocky.glb")]
+  raypencil terrain generate --coarse dem.tif --rock-coverage 0.1 -o out/rocky.glb
+  # The same on 24 m of a model that is kilometres wide.
+  raypencil terrain generate --coarse dem.tif --window 1200,3400,24,24 -o out/part.glb")]
 pub(crate) struct TerrainGenerate {
     /// Preset of all parameters: smooth, viking1, pathfinder, crater_field, crevassed or worst (docs/guide/terrain.md).
     #[arg(long, value_name = "NAME", default_value = "viking1")]
@@ -49,6 +51,10 @@ pub(crate) struct TerrainGenerate {
     /// Elevation model (GeoTIFF) whose posts the surface interpolates; the terrain gets its extent.
     #[arg(long, value_name = "DEM", conflicts_with = "extent")]
     pub(crate) coarse: Option<PathBuf>,
+
+    /// Part of the elevation model: x and y of its lower left corner, width and height, metres of the map.
+    #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", requires = "coarse", allow_hyphen_values = true, value_parser = window)]
+    pub(crate) window: Option<[f64; 4]>,
 
     /// Output file.
     #[arg(short, long, value_name = "FILE.glb")]

@@ -25,7 +25,7 @@ fn folder() -> TempDir {
 const CAMERA: &str = "version = 1\n[terrain]\nbuiltin = \"pyramids\"\n[drive]\nwaypoints_m = [[1, 0]]\n\
     sensor = \"cmos\"\n";
 
-const FILES: [&str; 20] = [
+const FILES: [&str; 22] = [
     "summary.json",
     "report.html",
     "drive.png",
@@ -38,6 +38,8 @@ const FILES: [&str; 20] = [
     "navigator-map.svg",
     "navigator-map.png",
     "local-map.npy",
+    "local-map-error.npy",
+    "local-map-keys.txt",
     "local-map-source.npy",
     "local-map.tif",
     "obstacle-map-nav2.yaml",

@@ -84,6 +84,20 @@ fn the_surface_interpolates_the_coarse_posts() {
         let z = height_at(&mesh, x, y).expect("ground there");
         assert!((z - f64::from(*height)).abs() < 2e-7, "{z} for {height} at {x}, {y}");
     }
+    // A part of the model: the posts from x = 1000003 to 1000007 m and y = 495 to 499 m.
+    let part = [&arguments[..arguments.len() - 1], &["part.glb", "--window", "1000003,495,4,4"]].concat();
+    screen(folder.path(), &part, 0);
+    assert_eq!(load_mesh(folder.path().join("part.glb")).expect("a mesh").faces().len(), 2 * 16 * 16);
+    // The whole of it is too much at a millimetre; the part is offered.
+    let fine = ["terrain", "generate", "--coarse", "mola.tif", "--post-spacing", "0.001", "-o", "x.glb"];
+    assert_trouble(
+        &raypencil(folder.path(), &fine),
+        &["faces in all", "--window X,Y,WIDTH,HEIGHT", "--post-spacing"],
+    );
+    assert_trouble(
+        &raypencil(folder.path(), &[&fine[..], &["--window", "1,2,3"]].concat()),
+        &["x, y, width and height"],
+    );
     // The same parameters in a scene give the same terrain.
     let scene = "version = 1\n[vehicle]\nposition_m = [1000005, 496]\n[terrain]\n\
         generate = { preset = \"smooth\", rock_coverage = 0, post_spacing_m = 0.3, fine_radius_m = 0, coarse = \"mola.tif\" }\n";
