@@ -43,6 +43,8 @@ fn main() -> std::process::ExitCode {
             println!("seed {seed}: made {:?}, told: {words}", wrong.made);
         }
     }
-    println!("{count} wrong renderers from seed {first}: {told} told {reasons} reasons, {silent} told none; {all_false} false");
+    println!(
+        "{count} wrong renderers from seed {first}: {told} told {reasons} reasons, {silent} told none; {all_false} false"
+    );
     std::process::ExitCode::from(u8::from(all_false > 0))
 }

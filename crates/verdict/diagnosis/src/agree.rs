@@ -35,9 +35,7 @@ pub(crate) fn tolerance_of(truth: &GroundTruth<'_>, recorded: &Recorded, wrong: 
         let [stated, exact] = [&recorded.answers, truth.answers()].map(|answers| channel.at(answers, *place));
         match (stated, exact) {
             (Value::Number(stated), Value::Number(exact)) => Some(((stated - exact) / exact).abs()),
-            (Value::Vector(stated), Value::Vector(exact)) => {
-                Some((stated - exact).length() / exact.length())
-            }
+            (Value::Vector(stated), Value::Vector(exact)) => Some((stated - exact).length() / exact.length()),
             _ => None,
         }
     };

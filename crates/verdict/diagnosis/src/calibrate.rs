@@ -151,7 +151,10 @@ pub(crate) fn calibrations(case: Case<'_>, places: &[Place]) -> Vec<(Mistake, Ru
         let is_good = |fit: &Fit| fit.left <= MAX_LEFT * before && is_small(scene, sensor, &fit.numbers);
         if let Some(fit) = fit(scene, &sights, model).filter(is_good) {
             // More numbers are told only if they leave much less.
-            if best.iter().all(|one| one.model.len() == fit.model.len() || fit.left < MORE_NUMBERS_LEAVE * one.left) {
+            if best
+                .iter()
+                .all(|one| one.model.len() == fit.model.len() || fit.left < MORE_NUMBERS_LEAVE * one.left)
+            {
                 best.retain(|one| one.model.len() == fit.model.len());
                 best.push(fit);
             }

@@ -55,7 +55,8 @@ pub(crate) fn cast(scene: &Scene, place: Place, rules: Rules) -> Cast {
             continue;
         }
         // Inside, each edge and the ray have one orientation; closed, so that a zero belongs to the face.
-        let sides = [[a, b], [b, c], [c, a]].map(|[from, to]| from.cross(to).dot(direction) * facing.signum());
+        let sides =
+            [[a, b], [b, c], [c, a]].map(|[from, to]| from.cross(to).dot(direction) * facing.signum());
         let least = sides[0].min(sides[1]).min(sides[2]);
         // Sides are volumes: the longest corner bounds them.
         let size = a.length().max(b.length()).max(c.length());

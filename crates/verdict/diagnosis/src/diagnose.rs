@@ -20,9 +20,8 @@ pub fn diagnose(truth: &GroundTruth<'_>, recorded: &Recorded, check: &Check) -> 
         let tolerance = tolerance_of(truth, recorded, &wrong.values);
         of(&Search::new(Case { truth, recorded, sensors, tolerance }, &wrong))
     };
-    let is_wrong = |result: &&raypencil_judge::SensorResult| {
-        result.of(Class::Defect) + result.of(Class::Undecided) > 0
-    };
+    let is_wrong =
+        |result: &&raypencil_judge::SensorResult| result.of(Class::Defect) + result.of(Class::Undecided) > 0;
     let compared = check.sensors.iter().filter(|result| result.compared() > 0).count();
     let mut found: Vec<(Vec<SensorId>, Finding)> = Vec::new();
     let mut open = Vec::new();
@@ -46,7 +45,8 @@ pub fn diagnose(truth: &GroundTruth<'_>, recorded: &Recorded, check: &Check) -> 
     });
     // Rays of several sensors together say what those of each do not. A pair of mistakes might be one of each.
     if open.len() > 1
-        && let Some(finding) = with_search(&open, &|search| search.find()).filter(|finding| finding.mistakes.len() == 1)
+        && let Some(finding) =
+            with_search(&open, &|search| search.find()).filter(|finding| finding.mistakes.len() == 1)
     {
         found.push((std::mem::take(&mut open), finding));
     }
@@ -88,9 +88,8 @@ fn beside_single_precision(
 fn together(found: Vec<(Vec<SensorId>, Finding)>, compared: usize) -> Vec<Reason> {
     let mut reasons: Vec<Reason> = Vec::new();
     for (sensors, Finding { mistakes, tally, .. }) in found {
-        let words = |mistakes: &[Mistake]| -> Vec<String> {
-            mistakes.iter().map(ToString::to_string).collect()
-        };
+        let words =
+            |mistakes: &[Mistake]| -> Vec<String> { mistakes.iter().map(ToString::to_string).collect() };
         match reasons.iter_mut().find(|reason| words(&reason.mistakes) == words(&mistakes)) {
             Some(reason) => {
                 reason.sensors.extend(sensors);

@@ -152,7 +152,8 @@ fn constants(case: Case<'_>) -> Vec<Mistake> {
 
 /// A change of axes for points and normals.
 fn axes(case: Case<'_>, places: &[Place], base: Option<&Correction>) -> Option<Correction> {
-    let channels: Vec<Channel> = case.channels()
+    let channels: Vec<Channel> = case
+        .channels()
         .into_iter()
         .filter(|channel| matches!(channel.item.quantity, Quantity::Point | Quantity::Normal))
         .collect();

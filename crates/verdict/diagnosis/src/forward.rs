@@ -13,7 +13,13 @@ const FEW_ROUNDINGS: f64 = 8.0 * f64::EPSILON;
 
 /// The value that a recording with this mistake would have had: the exact one, if what is stated is what the mistake
 /// makes of it; the stated one, if the mistake leaves this ray alone; else one that is wrong.
-pub(crate) fn foretold(mistake: Mistake, case: Case<'_>, channel: Channel, place: Place, stated: Value) -> Value {
+pub(crate) fn foretold(
+    mistake: Mistake,
+    case: Case<'_>,
+    channel: Channel,
+    place: Place,
+    stated: Value,
+) -> Value {
     let exact = channel.at(case.truth.answers(), place);
     let is_foretold = match mistake {
         Mistake::Rounded { quantum, down, .. } => match (stated, exact) {
@@ -63,11 +69,8 @@ pub(crate) fn is_rounded(storage: Storage, stated: f64, exact: f64, quantum: f64
     let slack = storage.ulp(stated) + FEW_ROUNDINGS * exact.abs();
     let multiple = (stated / quantum).round() * quantum;
     let error = exact - stated;
-    let is_next = if down {
-        (-slack..quantum + slack).contains(&error)
-    } else {
-        error.abs() <= 0.5 * quantum + slack
-    };
+    let is_next =
+        if down { (-slack..quantum + slack).contains(&error) } else { error.abs() <= 0.5 * quantum + slack };
     (stated - multiple).abs() <= slack && is_next
 }
 

@@ -79,7 +79,13 @@ impl Asked {
 
 /// Judges a recording after the corrections of a plan. Rays that no cell holds then are left out: whether they are
 /// right, nobody can tell.
-pub(crate) fn judge(case: Case<'_>, plan: &Plan, asked: &Asked, wrong: &WrongRays, precision: Precision) -> Tally {
+pub(crate) fn judge(
+    case: Case<'_>,
+    plan: &Plan,
+    asked: &Asked,
+    wrong: &WrongRays,
+    precision: Precision,
+) -> Tally {
     let mut recorded = corrected_recording(case, plan);
     recorded.precision = precision;
     for (beam, light) in recorded.answers.light.iter_mut().enumerate() {

@@ -42,14 +42,8 @@ impl Pairs {
     fn new(case: Case<'_>, places: &[Place], base: Option<&Correction>, of: Length) -> Option<Self> {
         let wanted = if of == Length::Depth { HitQuantity::Depth } else { HitQuantity::Range };
         let corrections: Vec<&Correction> = base.into_iter().collect();
-        let mut pairs = Self {
-            of,
-            values: Vec::new(),
-            has_planes: false,
-            storage: Storage::F64,
-            ulp: 0.0,
-            longest: 0.0,
-        };
+        let mut pairs =
+            Self { of, values: Vec::new(), has_planes: false, storage: Storage::F64, ulp: 0.0, longest: 0.0 };
         let mut first_normal = None;
         for channel in case.channels() {
             if hit_quantity(channel.item.quantity) != Some(wanted) {

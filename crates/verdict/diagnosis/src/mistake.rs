@@ -348,7 +348,11 @@ impl Mistake {
             Self::NearLimit(_) => "near_limit",
             Self::EdgesOpen => "edges_open",
             Self::CornerRays { columns, rows } => {
-                if columns.abs() == 0.5 && rows.abs() == 0.5 { "corner_rays" } else { "ray_offset" }
+                if columns.abs() == 0.5 && rows.abs() == 0.5 {
+                    "corner_rays"
+                } else {
+                    "ray_offset"
+                }
             }
             Self::Affine { factor: 1.0, .. } => "offset",
             Self::Affine { offset: 0.0, .. } => "factor",
@@ -398,7 +402,9 @@ impl Mistake {
             Self::BacksHit | Self::NearPlaneIgnored | Self::MaximumRangeIgnored => {
                 (GUIDE, "The contract for rays")
             }
-            Self::MaximumRangeAsDepth | Self::NearLimit(_) | Self::EdgesOpen => (GUIDE, "The contract for rays"),
+            Self::MaximumRangeAsDepth | Self::NearLimit(_) | Self::EdgesOpen => {
+                (GUIDE, "The contract for rays")
+            }
             Self::CornerRays { .. } => (FILES, "Cells"),
             Self::Affine { .. } | Self::FromPlane(_) | Self::Rounded { .. } => (REASONS, "Lengths"),
             Self::Cut { .. } => (REASONS, "Cuts and borders"),

@@ -180,17 +180,20 @@ impl<'t> CastTrial<'t> {
             let render = self.render(places, rules);
             let near = near(places, &render);
             let shows = |(near, cast): &(bool, &Cast)| *near || rules.edges_open || !cast.is_on_edge;
-            let shown: Vec<bool> = near.into_iter().zip(&render).filter(shows).map(|(near, _)| near).collect();
+            let shown: Vec<bool> =
+                near.into_iter().zip(&render).filter(shows).map(|(near, _)| near).collect();
             [count(&shown) as u64, shown.len() as u64]
         };
-        let [[explained, wrong], [kept, right]] = [&self.wrong, &self.right].map(|places| near_and_all(places));
+        let [[explained, wrong], [kept, right]] =
+            [&self.wrong, &self.right].map(|places| near_and_all(places));
         let tally = Tally { explained, wrong, broken: right - kept, right };
         // What is near the truth, too, shows nothing. Of a pair, neither half may be idle.
         let near_truth = |corrections: &[Option<&Correction>]| {
             let mut near = vec![true; self.wrong.len()];
             for (channel, one) in self.channels.iter().zip(corrections) {
                 let corrections: Vec<&Correction> = one.iter().copied().collect();
-                let own = near.iter_mut().zip(&self.wrong).filter(|(_, place)| place.sensor == channel.sensor);
+                let own =
+                    near.iter_mut().zip(&self.wrong).filter(|(_, place)| place.sensor == channel.sensor);
                 for (near, place) in own {
                     let exact = channel.at(self.case.truth.answers(), *place);
                     let value = corrected(self.case, *channel, *place, &corrections);
@@ -201,9 +204,7 @@ impl<'t> CastTrial<'t> {
         };
         let is_new = match correction {
             Some(_) => (self.wrong.len() - near_truth(&chosen)) as u64 >= MIN_WRONG_RAYS,
-            None => {
-                near_truth(&chosen) as f64 <= MAX_SHARE_NEAR_TRUTH * self.wrong.len() as f64
-            }
+            None => near_truth(&chosen) as f64 <= MAX_SHARE_NEAR_TRUTH * self.wrong.len() as f64,
         };
         (is_new && tally.is_enough(MIN_WRONG_RAYS, self.all)).then_some(tally)
     }

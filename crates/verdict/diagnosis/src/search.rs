@@ -252,7 +252,9 @@ impl<'t> Search<'t> {
                     && exact != 0.0
                 {
                     let error = ((stated - exact) / exact).abs();
-                    let Value::Number(own) = channel.at(&self.case.recorded.answers, *place) else { continue };
+                    let Value::Number(own) = channel.at(&self.case.recorded.answers, *place) else {
+                        continue;
+                    };
                     // What the file rounds away is no error of arithmetic.
                     let storage = self.case.recorded.storage.get(&(channel.sensor, channel.item));
                     let ulp = storage.map_or(0.0, |storage| storage.ulp(own));

@@ -235,7 +235,8 @@ fn three(numbers: [f64; 3]) -> String {
 
 /// An offset in words; `None` if there is none.
 fn part(offset: f64, unit: &str, [less, more]: [&str; 2]) -> Option<String> {
-    (offset != 0.0).then(|| format!("{} {unit} {}", short(offset.abs()), if offset < 0.0 { less } else { more }))
+    (offset != 0.0)
+        .then(|| format!("{} {unit} {}", short(offset.abs()), if offset < 0.0 { less } else { more }))
 }
 
 /// A length and its verb.
@@ -281,7 +282,9 @@ fn cut(
         (_, false) => "nearer than",
     };
     match held {
-        Held::Constant(number) => write!(f, "hits {beyond} {} have the length {}", metres(at), metres(number)),
+        Held::Constant(number) => {
+            write!(f, "hits {beyond} {} have the length {}", metres(at), metres(number))
+        }
         _ => write!(f, "hits {beyond} {} are lost", metres(at)),
     }
 }

@@ -63,7 +63,8 @@ fn page(document: &Document) -> Result<String, askama::Error> {
     let sign = document.outcome.sign();
     let blocks: Vec<Option<Part<'_>>> = document.blocks.iter().map(part).collect::<Result<_, _>>()?;
     Page {
-        head: page_head(&document.signed(), ""),
+        // With what was asked: of several pages that are open the tabs tell which is which.
+        head: page_head(&format!("{} {}", document.signed(), document.asked()), ""),
         colour: document.outcome.colour(),
         sign,
         document,

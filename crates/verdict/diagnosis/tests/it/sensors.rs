@@ -54,7 +54,8 @@ fn a_mistake_in_the_camera_is_told_of_the_camera_alone() {
 
 #[test]
 fn two_sensors_with_their_own_mistakes_have_their_own_reasons() {
-    let of_beam = [("rows reversed", "rows_reversed"), ("range offset", "offset"), ("fan", "fan"), ("yaw", "yaw")];
+    let of_beam =
+        [("rows reversed", "rows_reversed"), ("range offset", "offset"), ("fan", "fan"), ("yaw", "yaw")];
     for (index, (name, key)) in TABLE.iter().enumerate().step_by(3) {
         let (other, other_key) = of_beam[index % of_beam.len()];
         let wrong = made(few_pyramids(), &[(*name, CAMERA), (other, BEAM)]);
@@ -69,7 +70,10 @@ fn one_mistake_in_two_sensors_is_one_reason() {
     assert_eq!(few_pyramids().reasons(&beams.candidate), ["beam-0, beam-1: rows_reversed"]);
     let found = few_pyramids().diagnosis(&beams.candidate).unwrap();
     assert!(!found.reasons[0].is_everywhere);
-    let all = made(few_pyramids(), &[("rows reversed", CAMERA), ("rows reversed", SensorId::Beam(0)), ("rows reversed", BEAM)]);
+    let all = made(
+        few_pyramids(),
+        &[("rows reversed", CAMERA), ("rows reversed", SensorId::Beam(0)), ("rows reversed", BEAM)],
+    );
     assert!(few_pyramids().diagnosis(&all.candidate).unwrap().reasons[0].is_everywhere);
 }
 
@@ -78,7 +82,11 @@ fn a_sensor_without_a_reason_is_said_to_have_another_cause() {
     let wrong = made(few_pyramids(), &[("half a pixel in x", CAMERA), ("every fifth is lost", BEAM)]);
     let found = few_pyramids().diagnosis(&wrong.candidate).unwrap();
     assert_eq!(found.unexplained, [BEAM]);
-    assert!(found.sentence().ends_with("the wrong rays of beam-1 have another cause"), "{}", found.sentence());
+    assert!(
+        found.sentence().ends_with("the wrong rays of beam-1 have another cause"),
+        "{}",
+        found.sentence()
+    );
 }
 
 #[test]
@@ -115,7 +123,13 @@ fn a_lost_line_beside_undeclared_single_precision_is_told() {
 
 #[test]
 fn honest_errors_have_no_reason() {
-    for name in ["noise", "some noise", "one wrong face in a thousand", "a face is not there", "a corner is elsewhere"] {
+    for name in [
+        "noise",
+        "some noise",
+        "one wrong face in a thousand",
+        "a face is not there",
+        "a corner is elsewhere",
+    ] {
         for seed in [1, 2] {
             let mut wrong = Wrong::right(few_pyramids());
             wrong.make(few_pyramids(), named(name), CAMERA, &mut Random(seed));

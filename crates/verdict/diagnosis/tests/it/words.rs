@@ -124,7 +124,9 @@ fn a_share_is_rounded_down() {
         let mistakes = vec![Mistake::DepthForRange, Mistake::Unit(LengthUnit::Millimetres)];
         reason(mistakes, &[SensorId::Camera], true, [explained, wrong]).sentence()
     };
-    assert!(sentence(99_999, 100_000).starts_with("99.99 % of the wrong rays agree if range.T holds the depth"));
+    assert!(
+        sentence(99_999, 100_000).starts_with("99.99 % of the wrong rays agree if range.T holds the depth")
+    );
     assert!(sentence(5, 5).starts_with("100 % of the wrong rays agree if "));
     assert!(sentence(1003, 2000).starts_with("50.15 % of the wrong rays agree if "));
     assert!(

@@ -4,14 +4,10 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use raypencil_diagnosis::{
-    AngleUnit, CutBy, Diagnosis, Held, Length, LengthUnit, Mistake, Reason, Turn,
-};
+use raypencil_diagnosis::{AngleUnit, CutBy, Diagnosis, Held, Length, LengthUnit, Mistake, Reason, Turn};
 use raypencil_judge::{Quantity, Recorded};
 use raypencil_referee::ExactRenderer;
-use raypencil_scene::{
-    FaceId, Maybe, Mesh, Pose, Renderer, Request, Scene, SensorId, SensorMap,
-};
+use raypencil_scene::{FaceId, Maybe, Mesh, Pose, Renderer, Request, Scene, SensorId, SensorMap};
 
 use super::candidates::Bench;
 
@@ -142,7 +138,10 @@ impl Making<'_> {
 
     fn faces(&mut self, mut change: impl FnMut(u32) -> u32) {
         let Some(image) = &mut self.map.face else { return };
-        image.cells_mut().iter_mut().for_each(|cell| *cell = cell.get().map(|face| FaceId(change(face.0))).into());
+        image
+            .cells_mut()
+            .iter_mut()
+            .for_each(|cell| *cell = cell.get().map(|face| FaceId(change(face.0))).into());
     }
 
     /// Says "no hit" in a cell.
@@ -200,7 +199,8 @@ impl Making<'_> {
                     half_width: &mut half_width,
                     max_range: &mut beam.sensor.max_range,
                 });
-                beam.sensor.half_width = if width[0] == beam.sensor.half_width { half_width } else { width[0] };
+                beam.sensor.half_width =
+                    if width[0] == beam.sensor.half_width { half_width } else { width[0] };
             }
         }
         Scene::new(Arc::clone(scene.mesh()), camera, beams, scene.atmosphere(), scene.flux_model()).unwrap()
@@ -415,7 +415,10 @@ pub const MISTAKES: &[Make] = &[
     ("t for depth", |m| {
         let axis = m.axis();
         m.lengths(Length::Depth, |_, _, x| x / axis);
-        vec![Mistake::ParameterForDepth, Mistake::Affine { of: Length::Depth, factor: 1.0 / axis, offset: 0.0 }]
+        vec![
+            Mistake::ParameterForDepth,
+            Mistake::Affine { of: Length::Depth, factor: 1.0 / axis, offset: 0.0 },
+        ]
     }),
     ("millimetres", |m| units(m, LengthUnit::Millimetres, 1e3)),
     ("centimetres", |m| units(m, LengthUnit::Centimetres, 1e2)),
@@ -657,9 +660,12 @@ pub const MISTAKES: &[Make] = &[
     }),
     ("some noise", |m| {
         let mut random = Random(m.random.next());
-        m.lengths(Length::Range, |_, _, x| {
-            if random.below(10) == 0 { x * (0.9 + 0.2 * random.share()) } else { x }
-        });
+        m.lengths(
+            Length::Range,
+            |_, _, x| {
+                if random.below(10) == 0 { x * (0.9 + 0.2 * random.share()) } else { x }
+            },
+        );
         Vec::new()
     }),
     ("any faces", |m| {
@@ -676,8 +682,13 @@ pub const MISTAKES: &[Make] = &[
     }),
     ("a face is not there", |m| {
         let mesh = m.bench.scene.mesh();
-        let faces: Vec<u32> =
-            m.map.face.iter().flat_map(|image| image.cells()).filter_map(|cell| Some(cell.get()?.0)).collect();
+        let faces: Vec<u32> = m
+            .map
+            .face
+            .iter()
+            .flat_map(|image| image.cells())
+            .filter_map(|cell| Some(cell.get()?.0))
+            .collect();
         if faces.is_empty() {
             return Vec::new();
         }
@@ -859,8 +870,12 @@ pub fn draw(bench: &Bench, seed: u64) -> Wrong {
         makes.push(MISTAKES[random.below(MISTAKES.len())]);
     }
     // Those that cast rays again come first.
-    let casts = ["backs hit", "near plane", "nearest t", "maximum range", "corner", "pixel", "cx", "cy", "principal"];
-    let more = ["focal", "fan", "pitch", "yaw", "roll", "height", "ahead", "place", "rotation", "pose", "a face", "a corner"];
+    let casts =
+        ["backs hit", "near plane", "nearest t", "maximum range", "corner", "pixel", "cx", "cy", "principal"];
+    let more = [
+        "focal", "fan", "pitch", "yaw", "roll", "height", "ahead", "place", "rotation", "pose", "a face",
+        "a corner",
+    ];
     makes.sort_by_key(|(name, _)| !casts.iter().chain(&more).any(|start| name.contains(start)));
     let at: Vec<usize> = (0..2).map(|_| random.below(sensors.len() + 1)).collect();
     // Two that cast again in one sensor would forget one another.
@@ -876,9 +891,14 @@ pub fn draw(bench: &Bench, seed: u64) -> Wrong {
             }
         }
     }
-    for quantity in
-        [Quantity::Face, Quantity::Range, Quantity::Depth, Quantity::Point, Quantity::Normal, Quantity::CosIncidence]
-    {
+    for quantity in [
+        Quantity::Face,
+        Quantity::Range,
+        Quantity::Depth,
+        Quantity::Point,
+        Quantity::Normal,
+        Quantity::CosIncidence,
+    ] {
         if quantity != Quantity::Range && random.below(3) == 0 {
             wrong.without(quantity);
         }

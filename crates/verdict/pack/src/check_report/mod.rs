@@ -1,13 +1,15 @@
 //! A check in its one form for all packs, from which every report is made.
 //!
 //! ```text
-//! findings   bundles, items and wrong rays; their document, which `raypencil-report` prints
+//! findings   bundles, items and wrong rays, and the verdict on them
+//! document   the same as the document that `raypencil-report` prints
 //! given      what a candidate gives, what it does not, and in which type
 //! sensors    a check of sensors in that form
 //! explorer   the part of its page that answers when asked
 //! folder     the files of a check
 //! ```
 
+mod document;
 mod explorer;
 mod findings;
 mod folder;

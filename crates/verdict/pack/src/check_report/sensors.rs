@@ -13,9 +13,10 @@ use raypencil_scene_io::{Subject, probe_command};
 use serde_json::json;
 
 use crate::check::{Checked, Verified};
+use crate::check_report::document::suite;
 use crate::check_report::explorer::explorer;
 use crate::check_report::findings::{
-    BundleFindings, CheckFindings, ItemFindings, PackForm, WorstOf, WrongRay, suite,
+    BundleFindings, CheckFindings, ItemFindings, PackForm, WorstOf, WrongRay,
 };
 use crate::check_report::given::{coarse_storages, items_not_given, listed_totals, not_given};
 use crate::published::PackIdentity;

@@ -91,7 +91,10 @@ fn a_number_for_no_hit_without_faces_is_refused_or_named() {
     assert_passes(&check(folder.path(), "pyramids", &[]));
     // A range of 0 breaks no rule of files: the rays are judged, and the constant is found.
     missed(0.0);
-    assert_fails(&check(folder.path(), "pyramids", &[]), &["Why: 100 % of the wrong rays agree if 0 means \"no hit\""]);
+    assert_fails(
+        &check(folder.path(), "pyramids", &[]),
+        &["Why: 100 % of the wrong rays agree if 0 means \"no hit\""],
+    );
     assert_passes(&check(folder.path(), "pyramids", &["--miss", "0"]));
 }
 
