@@ -39,6 +39,7 @@ mod values;
 
 use std::sync::OnceLock;
 
+use glam::DVec3;
 use raypencil_scene::{CastRay, FaceId, Triangles};
 
 use crate::bvh::{Bvh, RayBundle};
@@ -90,7 +91,7 @@ impl<'t> ExactCast<'t> {
         Self {
             mesh,
             bvh: Bvh::build(faces.filter(Triangle::has_area).collect()),
-            diagonal: (high - low).length(),
+            diagonal: length(high - low),
             largest_coordinate: low.abs().max(high.abs()).max_element(),
             seams: OnceLock::new(),
         }
@@ -138,3 +139,11 @@ fn moved_bundle(ray: &CastRay, by: [f64; 2]) -> RayBundle {
 
 /// Far more than the roundings of a range.
 const RANGE_SLACK: f64 = 1.0 + 64.0 * f64::EPSILON;
+
+/// The length of a vector whose squares may be too small for f64: a mesh of 1e-170 has a diagonal, too.
+fn length(v: DVec3) -> f64 {
+    match v.abs().max_element() {
+        largest if 0.0 < largest && largest < 1e-140 => (v / largest).length() * largest,
+        _ => v.length(),
+    }
+}
