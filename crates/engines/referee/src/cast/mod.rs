@@ -113,7 +113,7 @@ fn bundle(ray: &CastRay) -> RayBundle {
     // that no reciprocal is infinite; the hierarchy's slack is far wider.
     let scaled = ray.direction / ray.direction.abs().max_element();
     let part = |x: f64| if x.abs() < 1e-100 { 0.0 } else { x };
-    let direction = glam::DVec3::from_array(scaled.to_array().map(part)).normalize();
+    let direction = DVec3::from_array(scaled.to_array().map(part)).normalize();
     let length = QueryRay::length(ray);
     RayBundle {
         origin: ray.origin,

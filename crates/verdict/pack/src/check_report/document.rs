@@ -2,12 +2,12 @@
 
 use raypencil_judge::{CHECK_CLASSES, Class, class_counts_json};
 use raypencil_report::{
-    Block, Column, Document, Grid, JunitCase, JunitSuite, Outcome, Room, count, quantity,
+    Block, Column, Document, Grid, JunitCase, JunitSuite, Outcome, Room, count, number, quantity,
 };
 use serde_json::{Map, Value, json};
 
 use super::findings::{
-    BundleFindings, CheckFindings, ItemFindings, MAX_SHOWN_DEFECTS, PackForm, WorstOf, arithmetic,
+    BundleFindings, CheckFindings, ItemFindings, MAX_SHOWN_DEFECTS, PackForm, WorstOf, WrongRay, arithmetic,
 };
 
 /// Number of the format of `check.json`. It grows when a key changes its meaning or goes away.

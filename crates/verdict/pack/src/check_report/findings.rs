@@ -4,10 +4,7 @@
 //! items: the quantities of its rays, or the clauses of loading.
 
 use raypencil_judge::{CHECK_CLASSES, Class, ClassCounts, class_counts_json};
-use raypencil_report::{
-    Block, Column, DefectGroup, DefectLine, Document, Grid, JunitCase, JunitSuite, Outcome, Room, count,
-    counted, number, quantity,
-};
+use raypencil_report::{DefectGroup, DefectLine, count, counted};
 use raypencil_scene::Precision;
 use serde_json::{Map, Value, json};
 
