@@ -11,6 +11,7 @@
 //! ```text
 //! axis       keys and their values: 20:35:5, or a list in a CSV file
 //! plan       all runs, their settings, and the parts that they are divided into
+//! formula    texts that a spreadsheet would compute
 //! results    what a run gives, as numbers with names
 //! record     a run's results in a file that tells whether it is whole
 //! work       makes one run
@@ -26,6 +27,7 @@ mod chart;
 mod document;
 mod error;
 mod files;
+mod formula;
 mod plan;
 mod record;
 mod results;

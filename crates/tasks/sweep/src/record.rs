@@ -10,9 +10,9 @@ use raypencil_scene_io::{InputFile, SceneInputs};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::formula::is_formula;
 use crate::plan::{Sweep, Task};
 use crate::results::Named;
-use crate::table::is_formula;
 
 const FORMAT: u32 = 2;
 

@@ -12,6 +12,7 @@ use parquet::schema::types::{Type, TypePtr};
 use raypencil_files::{FileError, write_atomically};
 use serde_json::Value;
 
+use crate::formula::is_formula;
 use crate::record::Outcome;
 use crate::run::Finished;
 
@@ -137,11 +138,6 @@ impl SweepTable {
         group.close()?;
         writer.into_inner()
     }
-}
-
-/// Whether a spreadsheet takes a text for a formula, which may run a program.
-pub(crate) fn is_formula(text: &str) -> bool {
-    text.starts_with(['=', '+', '-', '@', '\t', '\r']) && text.parse::<f64>().is_err()
 }
 
 impl Column {

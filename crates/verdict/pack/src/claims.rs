@@ -8,8 +8,8 @@ use crate::clauses::{can_count_clauses, clause_rays, needed_clauses, tests};
 use crate::manifest::{Manifest, PackKind};
 use crate::verification::Verification;
 
-/// Most tests of a ray against a face for which clauses are counted again unasked. Tuned: some 2 s on two cores.
-const MAX_TESTS_UNASKED: f64 = 1e9;
+/// Most tests of a ray against a face for which clauses are counted again unasked. Tuned: a second or two.
+const MAX_TESTS_UNASKED: f64 = 5e7;
 
 /// Refuses what a manifest says of its scene if that is not so. Names of sensors were compared when it was read.
 pub(crate) fn check_facts(manifest: &Manifest, scene: &Scene) -> Result<(), Fault> {

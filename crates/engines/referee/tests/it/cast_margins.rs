@@ -55,6 +55,25 @@ fn a_step_ends_the_surface_and_an_edge_between_two_faces_does_not() {
 }
 
 #[test]
+fn many_faces_in_one_place_have_the_margins_of_one() {
+    // Copies of a face, also begun at another corner and turned over.
+    let copies: Vec<[u32; 3]> =
+        (0..300).map(|k| [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1]][k % 4]).collect();
+    let (one, many) = (mesh(&SQUARE, &copies[..1]), mesh(&SQUARE, &copies));
+    let ray = down(0.625, 0.25, 4.0);
+    let [alone, among] = [&one, &many].map(|mesh| ExactCast::new(mesh).margins(&ray, Sides::Both));
+    assert_is(alone.face, 0.1875);
+    assert_is(among.face, 0.1875);
+    assert_is(among.surface, 0.1875);
+    // One of them in another plane, met at the same point: any displacement tells them apart.
+    let tilted: Vec<[f64; 3]> =
+        SQUARE.into_iter().chain([[0.25, 0.25, -1.0], [1.0, 0.25, 1.0], [0.625, 1.0, 0.0]]).collect();
+    let crossing: Vec<[u32; 3]> = copies.iter().copied().chain([[4, 5, 6]]).collect();
+    let margins = ExactCast::new(&mesh(&tilted, &crossing)).margins(&ray, Sides::Both);
+    assert!(margins.face.lo == 0.0, "{margins:?}");
+}
+
+#[test]
 fn a_slanted_face_that_comes_too_near_ends_both_margins() {
     // The plane z = x, of one large triangle, seen from z = 4: t = 4 - x. A sensor that is blind before t = 3 measures up to x = 1.
     let corners = [[-64.0, -64.0, -64.0], [192.0, -64.0, 192.0], [-64.0, 192.0, -64.0]];

@@ -47,15 +47,20 @@ impl ExactCast<'_> {
         let seen = |face: &'_ Triangle| face.seen_side(&query);
         let nearest: Vec<SeenFace<'_>> =
             nearest.iter().filter_map(|&face| Some(SeenFace { face, side: seen(face)? })).collect();
+        // Thousands of faces may lie in one place: those with the same corners have the same conditions.
+        let mut places = BTreeSet::new();
+        let bits = |face: &Triangle| face.corners.map(|corner| corner.to_array().map(f64::to_bits));
+        let distinct: Vec<&SeenFace<'_>> =
+            nearest.iter().filter(|one| places.insert(bits(one.face))).collect();
         let mut events = Vec::new();
         let mut lo = cap;
-        for one in &nearest {
+        for one in &distinct {
             for condition in OwnConditions::of(frame, one) {
                 lo = lo.min(condition.size[0]);
                 events.push(condition);
             }
         }
-        if let [first, others @ ..] = &nearest[..]
+        if let [first, others @ ..] = &distinct[..]
             && others.iter().any(|other| !first.is_coplanar_with(other, frame.exact()))
         {
             lo = 0.0;
@@ -67,7 +72,6 @@ impl ExactCast<'_> {
         });
         let first_range = frame.ranges()[0];
         let is_between = |range: &[f64; 2]| range[0] <= farthest && range[1] >= first_range;
-        // Thousands of faces may lie in one place.
         let own: BTreeSet<FaceId> = nearest.iter().map(|one| one.face.id).collect();
         let mut nearby = Nearby::new(&self.bvh);
         while nearby.size() < lo {
