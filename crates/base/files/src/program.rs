@@ -123,7 +123,7 @@ mod tests {
         std::fs::write(&file, "a").unwrap();
         let file = file.display().to_string();
         let line = format!("no-such-program --config={file} {file} {}", folder.path().display());
-        assert_eq!(names(&line), [file.clone()]);
+        assert_eq!(names(&line), std::slice::from_ref(&file));
         // The digest is that of the bytes as they are now.
         let before = command_files(&line);
         std::fs::write(&file, "b").unwrap();

@@ -489,7 +489,9 @@ fn plans_that_are_none_are_refused() {
     fs::write(folder.join("sweep.json"), plan_of(&axes.iter().map(String::as_str).collect::<Vec<_>>()))
         .unwrap();
     let start = std::time::Instant::now();
-    let refused = message(read_plan(&folder).and_then(|plan| finish(&plan, &[folder.clone()]).map(|_| plan)));
+    let refused = message(
+        read_plan(&folder).and_then(|plan| finish(&plan, std::slice::from_ref(&folder)).map(|_| plan)),
+    );
     assert!(
         refused.starts_with("10000 or more of 10000000 runs have no record, the first of them run 0"),
         "{refused}"
