@@ -85,8 +85,10 @@ pub(super) fn judge_hit(
     if class == Class::Defect {
         let name = |face: Option<FaceId>| face.map_or("a face that it does not name".into(), face_name);
         let said_words = if states_hit { name(stated.face) } else { "no hit".into() };
-        let true_words =
-            true_hit.map_or("no hit".into(), |hit| format!("{} at {} m", face_name(hit.face), hit.range));
+        let true_words = true_hit.map_or_else(
+            || format!("no hit{}", why_no_hit(truth, entry, &stated, &ray)),
+            |hit| format!("{} at {} m", face_name(hit.face), hit.range),
+        );
         entry.note(&format!("it says {said_words}, true is {true_words}"));
     }
     match (stated.names_faces(), states_hit || true_hit.is_some()) {
@@ -103,6 +105,22 @@ pub(super) fn judge_hit(
     }
     missing_values(entry, recorded);
     assumed
+}
+
+/// Why what is stated is no hit, in brackets, if its distance says it.
+fn why_no_hit(truth: &GroundTruth<'_>, entry: &RayEntry<'_>, stated: &StatedHit<'_>, ray: &Ray) -> String {
+    let place = entry.place;
+    let of_face = || Some(truth.judge().plane_hit(place, stated.face?)?.range);
+    let Some(range) = stated.range.or_else(of_face) else { return String::new() };
+    let longest = truth.scene().max_range(place.sensor).unwrap_or(f64::INFINITY);
+    let plane = ray.direction.length();
+    if range > longest {
+        format!(" ({range} m is beyond the maximum range of {longest} m)")
+    } else if range < plane {
+        format!(" ({range} m is before the sensor's plane, which the ray meets at {plane} m)")
+    } else {
+        String::new()
+    }
 }
 
 fn face_name(face: FaceId) -> String {

@@ -387,6 +387,37 @@ fn one_wrong_value_of_a_recording_is_one_defect_of_its_quantity() {
 }
 
 #[test]
+fn a_hit_too_far_or_too_near_is_told_why_it_is_none() {
+    let scene = walls(FluxModel::Radiometric);
+    let mut beam = scene.beams()[0];
+    // Face 0 lies within 3 m, face 1 beyond.
+    beam.sensor.max_range = 3.0;
+    let air = scene.atmosphere();
+    let short =
+        Scene::new(scene.mesh().clone(), *scene.camera(), vec![beam], air, FluxModel::Radiometric).unwrap();
+    let what = |range: Option<f64>| {
+        let mut wrong = exact(&short);
+        let of_pencil = exact(&scene).beams[0].range.as_ref().unwrap().at(7, 1).get();
+        map(&mut wrong).face.as_mut().unwrap().set(7, 1, Maybe::some(FaceId(1)));
+        map(&mut wrong).range.as_mut().unwrap().set(7, 1, range.or(of_pencil).into());
+        checked(&short, &wrong, Precision::F64)[1].defects[0].what.clone()
+    };
+    // Pencil 7 runs along (0.175, 0, 0.5): it meets the wall at 4 m at 4.2379... m, and its plane at 0.52974... m.
+    let far = what(None);
+    assert!(
+        far.contains("true is no hit (4.2379") && far.contains("m is beyond the maximum range of 3 m)"),
+        "{far}"
+    );
+    let near = what(Some(0.25));
+    assert!(
+        near.contains("no hit (0.25 m is before the sensor's plane, which the ray meets at 0.5297"),
+        "{near}"
+    );
+    let neither = what(Some(1.0));
+    assert!(neither.contains("true is no hit (referee: "), "{neither}");
+}
+
+#[test]
 fn wrong_hits_faces_and_visibilities_of_a_recording() {
     let scene = walls(FluxModel::Radiometric);
     let mut wrong = exact(&scene);
