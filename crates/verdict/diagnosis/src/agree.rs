@@ -22,10 +22,14 @@ const LEAST_TOLERANCE: f64 = 1e-13;
 /// Wrong values from which the tolerance is found, at most.
 const MAX_VALUES: usize = 4096;
 
-/// The relative tolerance for a channel's storage: half precision rounds by up to 2^-11.
+/// The relative tolerance for a channel's storage: half precision rounds by up to 2^-11, single precision by 2^-24, which a
+/// correction may double twice.
 pub(crate) fn tolerance(case: Case<'_>, channel: Channel) -> f64 {
-    let storage = case.recorded.storage.get(&(channel.sensor, channel.item));
-    if storage == Some(&Storage::F16) { 1.0 / 1024.0 } else { case.tolerance }
+    match case.recorded.storage.get(&(channel.sensor, channel.item)) {
+        Some(Storage::F16) => 1.0 / 1024.0,
+        Some(Storage::F32) => case.tolerance.max(1.0 / f64::from(1 << 22)),
+        _ => case.tolerance,
+    }
 }
 
 /// The tolerance for trials: a small part of the errors that are to be explained, where they are small themselves.

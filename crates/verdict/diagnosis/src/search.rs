@@ -33,7 +33,7 @@ const MAX_JUDGED_PAIRS: usize = 8;
 /// alone, so the ranges must prove that the rays are right.
 const MAX_OFF_BESIDE_ORDER: f64 = 0.02;
 
-/// Relative errors of values that look as computed in single precision: 2^-28 to 2^-21, at half of the values.
+/// Relative errors of values that look as computed in single precision: 2^-28 to 2^-21, at three of four.
 /// Tuned: the unit roundoff is 2^-24, that of double precision 2^-53. The judge excuses more where a ray grazes a face.
 const SINGLE_ERRORS: std::ops::RangeInclusive<f64> = 1.0 / (1 << 28) as f64..=1.0 / (1 << 21) as f64;
 
@@ -101,8 +101,10 @@ impl<'t> Search<'t> {
         if found.iter().all(|one| one.tally.off() > 0) {
             found.extend(cast.explain(None).into_iter().map(Finding::from));
         }
-        // Single precision excuses much: another reason goes before it.
-        found.extend(self.judge_as_single(&none));
+        // Single precision excuses much: every other reason goes before it.
+        if found.is_empty() {
+            found.extend(self.judge_as_single(&none));
+        }
         if let Some(best) = best(found) {
             return Some(best);
         }
@@ -220,7 +222,7 @@ impl<'t> Search<'t> {
         Some(found)
     }
 
-    /// Whether half of the numbers that are not right have an error of single precision, and no more digits than that.
+    /// Whether three of four numbers that are not right have an error of single precision, and half no more digits than that.
     fn looks_single(&self, plan: &Plan) -> bool {
         // What a file of single precision rounds away grows or shrinks when numbers are changed: that is no arithmetic.
         let changes = |one: &Correction| {
@@ -271,7 +273,7 @@ impl<'t> Search<'t> {
         }
         let is_of_both_signs = signs.iter().all(|sign| *sign as f64 >= MIN_SHARE_OF_SIGN * off as f64);
         let is_short = short as f64 >= MIN_SHARE_OF_SINGLE * numbers as f64;
-        numbers > 0 && 2 * off >= numbers && is_short && is_of_both_signs
+        numbers > 0 && 4 * off >= 3 * numbers && is_short && is_of_both_signs
     }
 }
 

@@ -64,10 +64,10 @@ impl Bench {
     }
 }
 
-/// The pyramids through a small camera and two small beams, in air that attenuates: 72 x 56 pixels, 2 x 64 x 4 pencils.
+/// The pyramids through a small camera and two small beams, in air that attenuates: 48 x 36 pixels, 2 x 48 x 4 pencils.
 pub fn pyramids() -> &'static Bench {
     static BENCH: OnceLock<Bench> = OnceLock::new();
-    BENCH.get_or_init(|| pyramids_of(72, 56))
+    BENCH.get_or_init(|| pyramids_with_pencils(48, 36, 48, 4))
 }
 
 /// The same, quicker to judge: 40 x 32 pixels, 2 x 32 x 4 pencils.

@@ -273,7 +273,13 @@ fn offset(making: &mut Making<'_>, by: [f64; 2]) -> Vec<Mistake> {
     } else {
         return Vec::new();
     }
-    vec![Mistake::PrincipalPoint { stated, truth }, Mistake::CornerRays { columns: by[0], rows: by[1] }]
+    // Off by whole pixels, it is a shift, but at the border.
+    let [columns, rows] = by.map(|one| -one.round() as i32);
+    vec![
+        Mistake::PrincipalPoint { stated, truth },
+        Mistake::CornerRays { columns: by[0], rows: by[1] },
+        Mistake::Shifted { columns, rows },
+    ]
 }
 
 fn posed(making: &mut Making<'_>, degrees: [f64; 3], metres: [f64; 3]) -> Vec<Mistake> {

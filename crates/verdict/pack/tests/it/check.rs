@@ -132,7 +132,13 @@ fn the_page_has_verdict_quantities_defects_and_pictures() {
     for outside in ["http:", "https:", "<script", "<link", "url("] {
         assert!(!page.contains(outside), "{outside}");
     }
+    // The page opens on the worst ray, which is the first of the list, and on the difference there.
+    let checked = three_faults();
+    let worst = &checked.check.sensors[0].listed[0].place;
+    let opening = format!("\"opening\":\"camera/{},{}/range.T/diff\"", worst.i, worst.j);
+    assert!(page_of(&checked).contains(&opening), "{opening}");
     let perfect = page_of(&perfect());
+    assert!(!perfect.contains("\"opening\":\""));
     assert!(perfect.contains("✓") && perfect.contains("<p>None.</p>"));
     assert!(perfect.contains("ranges are equal to the last bit"));
 }
