@@ -12,7 +12,7 @@ use crate::correction::{Case, Correction, corrected};
 use crate::cuts::{hits, split};
 use crate::mistake::Mistake;
 use crate::numbers::plainest_between;
-use crate::rules::{Rules, near_limit, pairs_of_wrong_rules, wrong_rules};
+use crate::rules::{Numbers, Rules, near_limit, pairs_of_wrong_rules, wrong_rules};
 use crate::sample::{WrongRays, key, some_of, spread_over};
 use crate::tally::{MIN_WRONG_RAYS, Tally};
 use raypencil_judge::Quantity;
@@ -134,6 +134,11 @@ impl<'t> CastTrial<'t> {
     /// Explanations by rays of one mistake, after at most one correction.
     pub(crate) fn explain(&self, correction: Option<&Correction>) -> Vec<ByRays> {
         let explain = |((mistake, rules), first): (&(Mistake, Rules), &OnceLock<Render>)| {
+            // A shift and another point of the cell undo each other in part: a corner and a shift are another corner.
+            let is_shift = correction.is_some_and(|one| matches!(one.mistake, Mistake::Shifted { .. }));
+            if is_shift && rules.numbers != Numbers::SCENE {
+                return None;
+            }
             let first = first.get_or_init(|| self.render(self.first_places(), *rules));
             let tally = self.tally(*rules, first, correction)?;
             let mistakes = correction.map(|one| one.mistake).into_iter().chain([*mistake]).collect();
