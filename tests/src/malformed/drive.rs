@@ -20,7 +20,7 @@ pub(super) fn cases() -> Vec<Case> {
     };
     let many = format!("waypoints_m = [{}]", "[0, 0],".repeat(100_000));
     vec![
-        drive("none", "no waypoints", "scene.toml:2:", "seed = 1"),
+        drive("none", "no waypoints", "the drive has no waypoints; expected --to X,Y", "seed = 1"),
         drive("nowhere", "an empty list of waypoints", "scene.toml:3:15", "waypoints_m = []"),
         drive("far", "a waypoint that is not finite", "scene.toml:3:", "waypoints_m = [[inf, 0]]"),
         drive("many", "a hundred thousand waypoints", "scene.toml:3:15", &many),
