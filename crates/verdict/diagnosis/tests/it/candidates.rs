@@ -145,6 +145,20 @@ pub fn walls_at(origin: DVec3) -> Bench {
     Bench::of(Scene::new(Arc::new(mesh), camera, vec![], air, FluxModel::Radiometric).unwrap())
 }
 
+/// Two walls that face a camera of 32 x 24 pixels, which looks along z: on the left one at 5 m, on the right one at 20 m.
+pub fn two_walls() -> Bench {
+    let wall =
+        |left: f32, right: f32, z: f32| [[left, -9.0, z], [right, -9.0, z], [right, 9.0, z], [left, 9.0, z]];
+    let corners = [wall(-9.0, 0.0, 5.0), wall(0.0, 9.0, 20.0)].concat();
+    let front = |a: u32| [[a, a + 2, a + 1], [a, a + 3, a + 2]];
+    let faces = [front(0), front(4)].concat();
+    let plaster = Material { name: "plaster".into(), reflectivity: 0.5 };
+    let mesh = Mesh::new(DVec3::ZERO, corners, faces, vec![0; 4], vec![plaster]).unwrap();
+    let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: rig::camera(32, 24, 0.03125, 1.0) };
+    let air = Atmosphere { attenuation: 0.0 };
+    Bench::of(Scene::new(Arc::new(mesh), camera, vec![], air, FluxModel::Radiometric).unwrap())
+}
+
 /// The camera's answers of some quantities alone.
 pub fn only(exact: &Recorded, quantities: &[Quantity]) -> Recorded {
     let mut candidate = exact.clone();

@@ -1,7 +1,7 @@
 //! Reasons sensor by sensor: each mistake in one of them, beside another one in another, and what must have no reason.
 
 use raypencil_diagnosis::Mistake;
-use raypencil_scene::SensorId;
+use raypencil_scene::{Maybe, SensorId};
 
 use super::candidates::*;
 use super::wrong_renderers::{MISTAKES, Make, Random, Wrong};
@@ -136,6 +136,31 @@ fn honest_errors_have_no_reason() {
             assert_eq!(few_pyramids().reasons(&wrong.candidate), [""; 0], "{name}");
         }
     }
+}
+
+#[test]
+fn faces_that_are_not_there_are_no_cut() {
+    // All hits of the right wall are lost, and so all beyond 6 m: but no face is cut there.
+    let bench = two_walls();
+    let lost = |is_lost: &dyn Fn(u32, u32, f64) -> bool| {
+        let mut wrong = Wrong::right(&bench);
+        let map = &mut wrong.candidate.answers.maps[0];
+        let ranges = map.range.clone().unwrap();
+        for (i, j) in (0..24).flat_map(|j| (0..32).map(move |i| (i, j))) {
+            if ranges.at(i, j).get().is_some_and(|range| is_lost(i, j, range)) {
+                map.face.as_mut().unwrap().set(i, j, Maybe::NONE);
+                for image in [&mut map.range, &mut map.depth, &mut map.cos_incidence].into_iter().flatten() {
+                    image.set(i, j, Maybe::NONE);
+                }
+                for image in [&mut map.point, &mut map.normal].into_iter().flatten() {
+                    image.set(i, j, Maybe::NONE);
+                }
+            }
+        }
+        bench.reasons(&wrong.candidate)
+    };
+    assert_eq!(lost(&|_, _, range| range > 6.0), [""; 0]);
+    assert_eq!(lost(&|_, _, range| range > 21.0), ["camera: cut_off"]);
 }
 
 #[test]
