@@ -824,13 +824,33 @@ impl Wrong {
             !reason.sensors.iter().all(|sensor| {
                 reason.mistakes.iter().all(|told| {
                     let of_sensor = self.truth.iter().filter(|(of, _)| of == sensor);
-                    of_sensor.flat_map(|(_, all)| all).any(|one| is_same(one, told))
+                    of_sensor.clone().flat_map(|(_, all)| all).any(|one| is_same(one, told))
+                        || is_sum(of_sensor.map(|(_, all)| all.as_slice()), told)
                 })
             })
         };
         let reason = found?.reasons.iter().find(is_false)?;
         Some(format!("made {:?}, told: {}", self.made, reason.sentence()))
     }
+}
+
+/// By how many cells the rays are off, of mistakes that say so.
+fn cells_off(mistake: &Mistake) -> Option<[f64; 2]> {
+    match mistake {
+        Mistake::Shifted { columns, rows } => Some([-f64::from(*columns), -f64::from(*rows)]),
+        Mistake::PrincipalPoint { stated, truth } => Some([truth[0] - stated[0], truth[1] - stated[1]]),
+        Mistake::CornerRays { columns, rows } => Some([*columns, *rows]),
+        _ => None,
+    }
+}
+
+/// Whether what is told is all that several mistakes come to: a shift and another principal point are a third one.
+fn is_sum<'m>(made: impl Iterator<Item = &'m [Mistake]>, told: &Mistake) -> bool {
+    let mut sum = [0.0; 2];
+    for [dx, dy] in made.filter_map(|all| all.iter().find_map(cells_off)) {
+        sum = [sum[0] + dx, sum[1] + dy];
+    }
+    cells_off(told).is_some_and(|told| (0..2).all(|k| (told[k] - sum[k]).abs() < 1e-3))
 }
 
 /// Whether two mistakes are the same with nearly the same numbers: of numbers that were found, a hundredth may be missing.

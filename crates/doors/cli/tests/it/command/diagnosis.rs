@@ -38,7 +38,7 @@ fn reversed_rows_are_named_on_all_reports_and_the_verdict_stays() {
     assert_passes(&check(folder.path(), "pyramids", &[]));
     edit(&folder, "camera.exr", flip);
     let output = check(folder.path(), "pyramids", &["-o", "out"]);
-    let why = "Why: 100 % of the wrong rays agree if rows are reversed: row 0 is the top row (docs/formats/files.md, Orientation)";
+    let why = "Why: 100 % of the wrong rays of the camera agree if rows are reversed: row 0 is the top row (docs/formats/files.md, Orientation)";
     assert_fails(&output, &["rays are wrong", why]);
     let read = |name: &str| fs::read_to_string(folder.path().join("out").join(name)).expect("a report");
     let json: serde_json::Value = serde_json::from_str(&read("check.json")).expect("JSON");
@@ -93,7 +93,7 @@ fn a_number_for_no_hit_without_faces_is_refused_or_named() {
     missed(0.0);
     assert_fails(
         &check(folder.path(), "pyramids", &[]),
-        &["Why: 100 % of the wrong rays agree if 0 means \"no hit\""],
+        &["Why: 100 % of the wrong rays of the camera agree if 0 means \"no hit\""],
     );
     assert_passes(&check(folder.path(), "pyramids", &["--miss", "0"]));
 }
