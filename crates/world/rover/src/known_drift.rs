@@ -85,7 +85,7 @@ mod tests {
         // error of its fix and 5 or 10 mm of drift. Between fixes they change nothing.
         let fixed =
             LocalisationErrors { fixes: Some(PositionFixes { every_frames: 100, noise: 0.03 }), ..drift };
-        let expected = (2.0 * 0.03_f64.powi(2) + 0.005_f64.powi(2) + 0.01_f64.powi(2)).sqrt();
+        let expected = (2.0 * 0.03_f64 * 0.03 + 0.005 * 0.005 + 0.01 * 0.01).sqrt();
         assert!((displaced(fixed, 110, 920, 6.0, 1.0) - expected).abs() < 1e-12);
         assert!((displaced(fixed, 110, 120, 6.0, 1.0) - 0.005).abs() < 1e-12);
     }
