@@ -5,8 +5,8 @@ use raypencil_files::Storage;
 use raypencil_judge::{GroundTruth, Quantity, Recorded};
 use raypencil_scene::{HitQuantity, Place};
 
+use crate::case::Case;
 use crate::channel::{Channel, Value};
-use crate::correction::Case;
 use crate::numbers::middle;
 
 /// Relative difference of values that count as equal while corrections are tried. Tuned: single precision leaves less

@@ -6,8 +6,8 @@
 use glam::DVec3;
 use raypencil_scene::{FaceId, HitQuantity, Place, Scene, SensorId};
 
+use crate::case::Case;
 use crate::channel::{Channel, Value, hit_quantity};
-use crate::correction::Case;
 use crate::mistake::{Mistake, Turn};
 use crate::numbers::{middle, plainest};
 use crate::rules::{Numbers, Rules, ray};

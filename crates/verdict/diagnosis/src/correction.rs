@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::channel::{Channel, Value, channels_of, hit_quantity};
+use crate::case::Case;
+use crate::channel::{Channel, Value, hit_quantity};
 use crate::forward::foretold;
 use crate::mistake::{Cosine, Length, Mistake};
 use glam::DVec3;
-use raypencil_judge::{GroundTruth, Item, Quantity, Recorded};
+use raypencil_judge::{Item, Quantity};
 use raypencil_scene::{FaceId, HitQuantity, Image, Pixel, Place, SensorId};
 
 /// Factors that correct the flux: of each beam's pencils and of its image, by the scene's model and by the other.
@@ -32,23 +33,6 @@ pub(crate) struct Correction {
 impl From<Mistake> for Correction {
     fn from(mistake: Mistake) -> Self {
         Self { mistake, table: Table::Empty }
-    }
-}
-
-/// The truth, the recording that is held to it, and the sensors that a reason is looked for.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Case<'t> {
-    pub(crate) truth: &'t GroundTruth<'t>,
-    pub(crate) recorded: &'t Recorded,
-    pub(crate) sensors: &'t [SensorId],
-    /// Relative difference of values that count as equal while corrections are tried.
-    pub(crate) tolerance: f64,
-}
-
-impl Case<'_> {
-    /// The channels that the recording has of these sensors.
-    pub(crate) fn channels(self) -> Vec<Channel> {
-        channels_of(self.recorded, self.sensors)
     }
 }
 

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::case::Case;
 use crate::channel::{Channel, Value, hit_quantity};
-use crate::correction::{Case, Correction};
+use crate::correction::Correction;
 use crate::forward::{cut_number, holds};
 use crate::mistake::{CutBy, Held, Mistake};
 use crate::numbers::plainest_between;

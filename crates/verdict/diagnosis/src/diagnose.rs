@@ -1,7 +1,7 @@
 //! The diagnosis of a recording: a search for each sensor by itself, and then for those together that have no reason yet.
 
 use crate::agree::tolerance_of;
-use crate::correction::Case;
+use crate::case::Case;
 use crate::diagnosis::{Diagnosis, Reason};
 use crate::mistake::Mistake;
 use crate::sample::WrongRays;

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::agree::is_near;
+use crate::case::Case;
 use crate::channel::{Channel, Value};
-use crate::correction::{Case, Correction, FluxFactors, Table, corrected};
+use crate::correction::{Correction, FluxFactors, Table, corrected};
 use crate::lengths::lengths;
 use crate::mistake::{AngleUnit, Cosine, Leg, Length, LengthUnit, Mistake};
 use crate::numbers::{middle, plainest};

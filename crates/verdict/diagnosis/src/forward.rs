@@ -1,8 +1,8 @@
 //! Mistakes that nothing undoes, since a number was rounded or lost: what they make of the exact value is compared with what is
 //! stated.
 
+use crate::case::Case;
 use crate::channel::{Channel, Value};
-use crate::correction::Case;
 use crate::mistake::{CutBy, Held, Mistake};
 use raypencil_files::Storage;
 use raypencil_judge::Quantity;

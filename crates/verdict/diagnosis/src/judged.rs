@@ -5,8 +5,9 @@ use std::collections::BTreeSet;
 use rayon::prelude::*;
 
 use crate::agree::absorbed;
+use crate::case::Case;
 use crate::channel::{Channel, Value};
-use crate::correction::{Case, Correction, corrected};
+use crate::correction::{Correction, corrected};
 use crate::sample::{Key, WrongRays, key, place, some_of};
 use crate::tally::Tally;
 use crate::trial::Plan;

@@ -1,7 +1,8 @@
 //! Factor, offset and quantum of stated lengths, found from them.
 
+use crate::case::Case;
 use crate::channel::{Value, hit_quantity};
-use crate::correction::{Case, Correction, corrected};
+use crate::correction::{Correction, corrected};
 use crate::forward::is_rounded;
 use crate::mistake::{Length, Mistake};
 use crate::numbers::{middle, plainest, plainest_between};

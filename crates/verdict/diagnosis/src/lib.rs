@@ -53,6 +53,7 @@
 //! words          the mistakes in words
 //! numbers        the plainest number that says the same
 //! channel        channels of a recording, cell by cell
+//! case           what a reason is looked for in
 //! correction     what undoes a mistake
 //! forward        what a mistake that nothing undoes makes of an exact value
 //! agree          values that are near enough to be tried further
@@ -74,6 +75,7 @@
 
 mod agree;
 mod calibrate;
+mod case;
 mod cast;
 mod channel;
 mod correction;

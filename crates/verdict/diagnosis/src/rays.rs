@@ -6,9 +6,10 @@ use rayon::prelude::*;
 
 use crate::agree::{is_near, tolerance};
 use crate::calibrate::calibrations;
+use crate::case::Case;
 use crate::cast::{Cast, CastHit, cast};
 use crate::channel::{Channel, Value};
-use crate::correction::{Case, Correction, corrected};
+use crate::correction::{Correction, corrected};
 use crate::cuts::{hits, split};
 use crate::mistake::Mistake;
 use crate::numbers::plainest_between;

@@ -1,8 +1,9 @@
 //! The search for a reason, of one sensor or of several together: single mistakes first, then pairs. The judge has the last
 //! word on each.
 
+use crate::case::Case;
 use crate::channel::{Channel, Value};
-use crate::correction::{Case, Correction, corrected};
+use crate::correction::{Correction, corrected};
 use crate::cuts::cuts;
 use crate::fit::{fitted, fixed};
 use crate::judged::{Asked, judge};

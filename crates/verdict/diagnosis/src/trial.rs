@@ -3,8 +3,9 @@
 use raypencil_scene::Place;
 
 use crate::agree::is_near;
+use crate::case::Case;
 use crate::channel::{Channel, Value};
-use crate::correction::{Case, Correction, corrected};
+use crate::correction::{Correction, corrected};
 
 /// Sampled rays and their exact values, channel by channel.
 #[derive(Debug)]

@@ -10,9 +10,9 @@ use parquet::record::Field;
 use raypencil_drive::{DriveJob, drive, drive_json};
 use raypencil_harness::{Contender, contender, validate};
 use raypencil_judge::JudgeShare;
+use raypencil_report::Mark;
 use raypencil_scene::Silent;
 use raypencil_scene_io::{Overrides, Setting, load};
-use raypencil_report::Mark;
 use raypencil_sweep::{
     Axis, Cells, Chart, Finished, Outcome, Part, Sweep, SweepError, SweepProgress, SweepTable, Task,
     default_charts, finish, has_part, read_plan, run_part, write_sweep,
@@ -445,7 +445,8 @@ fn charts_have_a_line_for_each_value_and_name_what_is_missing() {
         assert!(svg.contains(word), "{word}");
     }
     // The key's own name, 21 letters of at most 8 pixels, ends on the page, though its values are short.
-    let by_pitch = Chart::parse("camera.hits,terrain.builtin,camera.pitch_down_deg").unwrap().draw(&table).unwrap();
+    let by_pitch =
+        Chart::parse("camera.hits,terrain.builtin,camera.pitch_down_deg").unwrap().draw(&table).unwrap();
     let named = by_pitch.marks.iter().filter_map(|mark| match mark {
         Mark::Text { at, text, .. } if text == "camera.pitch_down_deg" => Some(at[0] + 8.0 * 21.0),
         _ => None,

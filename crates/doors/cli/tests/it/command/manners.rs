@@ -25,7 +25,7 @@ fn quiet_leaves_the_last_line_of_a_result() {
     // A result of several parts has one last line too.
     let small = data("scenes/pyramids-small.toml");
     let quiet = raypencil(folder.path(), &["--quiet", "validate", &small]);
-    assert_eq!(text(&quiet.stdout), "All 7,936 rays agree.\n");
+    assert_eq!(text(&quiet.stdout), "✓ All 7,936 rays agree.\n");
 }
 
 #[test]

@@ -86,9 +86,10 @@ impl ExactCast<'_> {
                 // An edge shared with a nearest face gives the same size but for rounding: no new event, but the proven size may
                 // be the smaller one.
                 let enough = lo * (1.0 - 1.0 / (1u64 << 30) as f64);
-                let (least, event) = entering.event(frame, nearest.first(), enough);
-                lo = lo.min(least);
-                events.extend(event);
+                if let Some(event) = entering.event(frame, nearest.first(), lo) {
+                    lo = lo.min(event.size[0]);
+                    events.extend((event.size[0] < enough).then_some(event));
+                }
             }
         }
         if lo >= cap {
@@ -251,18 +252,15 @@ impl SeenFace<'_> {
         conditions
     }
 
-    /// The least displacement at which this face may be among the nearest, and its entry, if it happens within `enough`.
-    fn event(&self, frame: &Frame<'_>, nearest: Option<&Self>, enough: f64) -> (f64, Option<Event>) {
-        let never = (f64::INFINITY, None);
-        let Some(size) = least_size(&self.conditions(&frame.fast, nearest)) else { return never };
-        let least = in_units(size, frame)[0];
-        if least >= enough {
-            return (least, None);
+    /// The entry of this face among the nearest, if it happens within `enough`.
+    fn event(&self, frame: &Frame<'_>, nearest: Option<&Self>, enough: f64) -> Option<Event> {
+        let fast = self.conditions(&frame.fast, nearest);
+        if in_units(least_size(&fast)?, frame)[0] >= enough {
+            return None;
         }
         let exact = self.conditions(frame.exact(), nearest);
-        let Some(size) = least_size(&exact) else { return never };
-        let size = in_units(size, frame);
-        let conditions = || exact.iter().map(|condition| rounded_exact(condition, frame)).collect();
-        (size[0], (size[0] < enough).then(|| Event { size, kind: EventKind::Enters(conditions()) }))
+        let size = in_units(least_size(&exact)?, frame);
+        let conditions = exact.iter().map(|condition| rounded_exact(condition, frame)).collect();
+        (size[0] < enough).then_some(Event { size, kind: EventKind::Enters(conditions) })
     }
 }
