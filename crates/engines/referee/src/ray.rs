@@ -34,12 +34,12 @@ pub(crate) struct ScaledRay<T> {
     pub(crate) direction_scale: T,
 }
 
-/// One sensor of a scene with its pose, and the pose's rotation in intervals: a search for a margin asks for the rays of one
+/// One sensor of a scene with its pose, and the [parts](ScaledRotation::parts) of the pose's rotation in intervals: a search for a margin asks for the rays of one
 /// sensor some thousand times.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum MountedSensor {
-    Camera(Mounted<Camera>, ScaledRotation<Interval>),
-    Beam(Mounted<Beam>, ScaledRotation<Interval>),
+    Camera(Mounted<Camera>, [Interval; 10]),
+    Beam(Mounted<Beam>, [Interval; 10]),
 }
 
 impl MountedSensor {
@@ -52,17 +52,17 @@ impl MountedSensor {
     }
 
     pub(crate) fn camera(mounted: Mounted<Camera>) -> Self {
-        Self::Camera(mounted, ScaledRotation::of(mounted.scene_from_sensor.rotation))
+        Self::Camera(mounted, ScaledRotation::of(mounted.scene_from_sensor.rotation).parts())
     }
 
     pub(crate) fn beam(mounted: Mounted<Beam>) -> Self {
-        Self::Beam(mounted, ScaledRotation::of(mounted.scene_from_sensor.rotation))
+        Self::Beam(mounted, ScaledRotation::of(mounted.scene_from_sensor.rotation).parts())
     }
 
     /// The rotation of the pose.
     pub(crate) fn rotation<T: Number>(&self) -> ScaledRotation<T> {
         let (Self::Camera(_, in_intervals) | Self::Beam(_, in_intervals)) = self;
-        let formed = T::of_intervals(in_intervals.parts());
+        let formed = T::of_intervals(*in_intervals);
         formed.map_or_else(|| ScaledRotation::of(self.pose().rotation), ScaledRotation::of_parts)
     }
 

@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3};
 use crate::number::Number;
 
 /// Three coordinates.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Vector<T>(pub(crate) [T; 3]);
 
 impl<T: Number> Vector<T> {
@@ -54,7 +54,7 @@ impl<T: Number> Vector<T> {
 
 /// The rotation p -> q p q* as a matrix: a polynomial of the stored quaternion q. It is q . q times the pose's
 /// rotation.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct ScaledRotation<T> {
     rows: [Vector<T>; 3],
     /// q . q: the factor to the pose's rotation.

@@ -5,36 +5,48 @@ use std::collections::BTreeMap;
 
 use super::source::{crates, is_for_tests, sources};
 
-/// A noun, the last word of a type's name; the one type that has it; and types that are of another kind, with what they are.
-const NOUNS: [(&str, &str, &[(&str, &str)]); 6] = [
-    (
-        "Ruling",
-        "referee::Ruling",
-        &[
+/// A noun: the last word of a type's name.
+struct Noun {
+    word: &'static str,
+    /// The one type that has it.
+    one: &'static str,
+    /// Types that are of another kind, with what they are.
+    others: &'static [(&'static str, &'static str)],
+}
+
+const NOUNS: [Noun; 6] = [
+    Noun {
+        word: "Ruling",
+        one: "referee::Ruling",
+        others: &[
             ("referee::VisibilityRuling", "the two rulings on one answer about the camera's view"),
             ("diff::ChannelRuling", "what thresholds of a user allow in a channel of two files"),
         ],
-    ),
-    ("Margin", "referee::Margin", &[("judge::DefectMargin", "which of its margins a wrong ray shows")]),
-    (
-        "Margins",
-        "referee::Margins",
-        &[
+    },
+    Noun {
+        word: "Margin",
+        one: "referee::Margin",
+        others: &[("judge::DefectMargin", "which of its margins a wrong ray shows")],
+    },
+    Noun {
+        word: "Margins",
+        one: "referee::Margins",
+        others: &[
             ("referee::VisibilityMargins", "what may change of the camera's view of a point"),
             ("explorer::RayMargins", "the lower ends of a sensor's margins, as a page has them"),
             ("rover::ErrorMargins", "how far a map's errors move a test of an obstacle"),
         ],
-    ),
-    ("Mistake", "diagnosis::Mistake", &[]),
-    ("Manifest", "pack::Manifest", &[]),
-    (
-        "Candidate",
-        "harness::Candidate",
-        &[
+    },
+    Noun { word: "Mistake", one: "diagnosis::Mistake", others: &[] },
+    Noun { word: "Manifest", one: "pack::Manifest", others: &[] },
+    Noun {
+        word: "Candidate",
+        one: "harness::Candidate",
+        others: &[
             ("harness::ProbedCandidate", "what it answers to one ray"),
             ("harness::JudgedCandidate", "what became of it on one scene"),
         ],
-    ),
+    },
 ];
 
 /// The last word of a name in camel case.
@@ -71,12 +83,13 @@ fn each_noun_has_one_type() {
             list(name.trim_start_matches("raypencil-"), &file.items, &mut found);
         }
     }
-    for (noun, one, others) in NOUNS {
+    for Noun { word, one, others } in NOUNS {
         let mut expected = vec![one.to_string()];
         expected.extend(others.iter().map(|(name, _)| name.to_string()));
-        let mut there = found.remove(noun).unwrap_or_default();
-        (expected.sort(), there.sort());
-        assert_eq!(there, expected, "types named {noun}: use {one}, or say here what the other is");
+        let mut there = found.remove(word).unwrap_or_default();
+        expected.sort();
+        there.sort();
+        assert_eq!(there, expected, "types named {word}: use {one}, or say here what the other is");
     }
 }
 

@@ -41,7 +41,7 @@ fn printed(plan: &mut DrivePlan) {
 }
 
 /// One mended rule put back at a time.
-const PUT_BACK: [(&str, Change); 8] = [
+const PUT_BACK: [(&str, Change); 9] = [
     ("elevation as printed", |plan| plan.map_rules.elevation = Rule::Paper),
     ("extrapolate as printed", |plan| plan.map_rules.extrapolate = Rule::Paper),
     ("several as printed", |plan| plan.map_rules.several = Rule::Paper),

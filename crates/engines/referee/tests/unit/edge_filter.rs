@@ -61,7 +61,7 @@ fn what_the_filter_says_of_lines_within_rounding_of_an_edge_is_so() {
     let mut random = SplitMix64(11);
     let (mut beside, mut wrong_sums) = (0, 0);
     for _ in 0..60_000 {
-        let size = 2.0_f64.powi(-40 - random.below(20) as i32);
+        let size = libm::scalbn(1.0, -40 - random.below(20) as i32);
         let size = size * random.part();
         let case = Case::beside_an_edge(&mut random, size);
         let (filter, signs) = (case.filter(), case.signs());
