@@ -71,6 +71,7 @@ ONLY_COMMAND = {
     "drive --both": "`with_` takes two renderers",
     "drive --stripes": "stripes from a file are taken by the command alone",
     "generate --output": "a mesh is returned; `save` writes it",
+    "generate --window": "the model of `coarse` is a file: the command takes a part of it",
     "pack --blind": "random scenes are the command's alone",
     "pack --fronts-only": "`pack_rays` has it",
     "pack --input": "the input pack is no pack of a scene",

@@ -64,7 +64,8 @@ fn stripe_arrays(frame: &DriveFrame) -> (Array, Array) {
 /// The map: the row of smallest y comes first.
 fn map_dict<'py>(py: Python<'py>, map: &ElevationMap) -> PyResult<Bound<'py, PyDict>> {
     let side = map.size().points as usize;
-    let elevations: Vec<f64> = map.points().map(|point| map.elevation(point).unwrap_or(f64::NAN)).collect();
+    let estimate = |point| map.estimate(point).map_or(f64::NAN, |estimate| estimate.elevation);
+    let elevations: Vec<f64> = map.points().map(estimate).collect();
     let source = |point| match map.source(point) {
         ElevationSource::Unknown => 0_u8,
         ElevationSource::Proximity => 1,
