@@ -11,11 +11,11 @@
 #[allow(dead_code)]
 #[path = "../tests/it/candidates.rs"]
 mod candidates;
-#[path = "../tests/it/wrong_renderers.rs"]
+#[path = "../tests/it/wrong_renderers/mod.rs"]
 mod wrong_renderers;
 
 use candidates::{pyramids, walls};
-use wrong_renderers::draw;
+use wrong_renderers::wrong::draw;
 
 fn main() -> std::process::ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -1,7 +1,7 @@
 //! Wrong renderers drawn at random: what is told is true, or nothing is told. The example `wrong_renderers` draws hundreds.
 
 use super::candidates::*;
-use super::wrong_renderers::{Wrong, draw};
+use super::wrong_renderers::wrong::{Wrong, draw};
 
 #[test]
 fn some_random_wrong_renderers_are_told_truly_or_not_at_all() {

@@ -4,7 +4,8 @@ use raypencil_diagnosis::Mistake;
 use raypencil_scene::{Maybe, SensorId};
 
 use super::candidates::*;
-use super::wrong_renderers::{MISTAKES, Make, Random, Wrong};
+use super::wrong_renderers::wrong::Wrong;
+use super::wrong_renderers::{MISTAKES, Make, Random};
 
 const CAMERA: SensorId = SensorId::Camera;
 const BEAM: SensorId = SensorId::Beam(1);

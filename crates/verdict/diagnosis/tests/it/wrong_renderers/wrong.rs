@@ -1,0 +1,189 @@
+//! A wrong renderer that is drawn, and whether what is told of it is true.
+
+use super::*;
+
+/// A wrong renderer.
+pub struct Wrong {
+    pub candidate: Recorded,
+    /// What was made of which sensor, in words.
+    pub made: Vec<(SensorId, &'static str)>,
+    /// What is true of each sensor.
+    truth: Vec<(SensorId, Vec<Mistake>)>,
+}
+
+/// The hits alone: light follows them in ways of its own.
+pub fn hits_of(bench: &Bench) -> Recorded {
+    let mut candidate = bench.exact.clone();
+    let is_hit = |quantity: Quantity| {
+        matches!(
+            quantity,
+            Quantity::Face
+                | Quantity::Range
+                | Quantity::Depth
+                | Quantity::Point
+                | Quantity::Normal
+                | Quantity::CosIncidence
+        )
+    };
+    candidate.storage.retain(|(_, item), _| is_hit(item.quantity));
+    for light in &mut candidate.answers.light {
+        (light.image, light.other_image, light.other_flux) = (None, None, None);
+        let (columns, rows) = (light.returns.columns, light.returns.rows);
+        light.returns = raypencil_scene::Returns::unsupported(columns, rows);
+    }
+    candidate
+}
+
+impl Wrong {
+    pub fn right(bench: &Bench) -> Self {
+        Self { candidate: hits_of(bench), made: Vec::new(), truth: Vec::new() }
+    }
+
+    /// Leaves a quantity out.
+    pub fn without(&mut self, quantity: Quantity) {
+        self.candidate.storage.retain(|(_, item), _| item.quantity != quantity);
+        for map in &mut self.candidate.answers.maps {
+            match quantity {
+                Quantity::Face => map.face = None,
+                Quantity::Range => map.range = None,
+                Quantity::Depth => map.depth = None,
+                Quantity::Point => map.point = None,
+                Quantity::Normal => map.normal = None,
+                _ => map.cos_incidence = None,
+            }
+        }
+    }
+
+    /// Makes a mistake in a sensor. Rays that are cast otherwise forget what was made before: they come first.
+    pub fn make(&mut self, bench: &Bench, (name, make): Make, sensor: SensorId, random: &mut Random) {
+        let index = match sensor {
+            SensorId::Camera => 0,
+            SensorId::Beam(beam) => beam + 1,
+        };
+        let map = &mut self.candidate.answers.maps[index];
+        let true_of_it = make(&mut Making { bench, sensor, map, random });
+        self.made.push((sensor, name));
+        self.truth.push((sensor, true_of_it));
+    }
+
+    /// The candidate as a file of single precision.
+    pub fn store_single(&mut self) {
+        self.candidate = super::super::candidates::stored_single(&self.candidate);
+    }
+
+    /// The first reason that is not true; `None` if all are.
+    pub fn false_reason(&self, found: Option<&Diagnosis>) -> Option<String> {
+        let is_false = |reason: &&Reason| {
+            !reason.sensors.iter().all(|sensor| {
+                reason.mistakes.iter().all(|told| {
+                    let of_sensor = self.truth.iter().filter(|(of, _)| of == sensor);
+                    of_sensor.clone().flat_map(|(_, all)| all).any(|one| is_same(one, told))
+                        || is_sum(of_sensor.map(|(_, all)| all.as_slice()), told)
+                })
+            })
+        };
+        let reason = found?.reasons.iter().find(is_false)?;
+        Some(format!("made {:?}, told: {}", self.made, reason.sentence()))
+    }
+}
+
+/// By how many cells the rays are off, of mistakes that say so.
+fn cells_off(mistake: &Mistake) -> Option<[f64; 2]> {
+    match mistake {
+        Mistake::Shifted { columns, rows } => Some([-f64::from(*columns), -f64::from(*rows)]),
+        Mistake::PrincipalPoint { stated, truth } => Some([truth[0] - stated[0], truth[1] - stated[1]]),
+        Mistake::CornerRays { columns, rows } => Some([*columns, *rows]),
+        _ => None,
+    }
+}
+
+/// Whether what is told is all that several mistakes come to: a shift and another principal point are a third one.
+fn is_sum<'m>(made: impl Iterator<Item = &'m [Mistake]>, told: &Mistake) -> bool {
+    let mut sum = [0.0; 2];
+    for [dx, dy] in made.filter_map(|all| all.iter().find_map(cells_off)) {
+        sum = [sum[0] + dx, sum[1] + dy];
+    }
+    cells_off(told).is_some_and(|told| (0..2).all(|k| (told[k] - sum[k]).abs() < 1e-3))
+}
+
+/// Whether two mistakes are the same with nearly the same numbers: of numbers that were found, a hundredth may be missing.
+fn is_same(made: &Mistake, told: &Mistake) -> bool {
+    let parts = |mistake: &Mistake| {
+        let text = format!("{mistake:?}");
+        let words: Vec<String> = text
+            .split(|c: char| !(c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_')))
+            .filter(|word| !word.is_empty())
+            .map(str::to_string)
+            .collect();
+        words
+    };
+    // Of several sensors the first is told, whose last row has another number.
+    if made.to_string() == told.to_string() {
+        return true;
+    }
+    let (made_parts, told_parts) = (parts(made), parts(told));
+    if made_parts.len() != told_parts.len() || made.key() != told.key() {
+        return false;
+    }
+    // How much a number may differ: a hundredth of what it is off by.
+    let difference = match (made, told) {
+        (Mistake::FocalLength { stated, truth }, _) | (Mistake::Fan { stated, truth }, _) => stated - truth,
+        (Mistake::Affine { factor, offset: 0.0, .. }, _) => factor - 1.0,
+        // A cut lies somewhere between two hits.
+        (Mistake::Cut { .. }, _) => 10.0,
+        _ => 1.0,
+    };
+    made_parts.iter().zip(&told_parts).all(|(a, b)| match (a.parse::<f64>(), b.parse::<f64>()) {
+        (Ok(a), Ok(b)) => (a - b).abs() <= 0.01 * difference.abs().min(a.abs().max(1e-3)),
+        _ => a == b,
+    })
+}
+
+/// One draw: a mistake in one sensor or in all, alone or beside another, in a candidate that has some quantities.
+pub fn draw(bench: &Bench, seed: u64) -> Wrong {
+    let mut random = Random(seed);
+    let mut wrong = Wrong::right(bench);
+    let sensors: Vec<SensorId> = bench.scene.sensors().collect();
+    let mut makes = vec![MISTAKES[random.below(MISTAKES.len())]];
+    if random.below(2) == 0 {
+        makes.push(MISTAKES[random.below(MISTAKES.len())]);
+    }
+    // Those that cast rays again come first.
+    let casts =
+        ["backs hit", "near plane", "nearest t", "maximum range", "corner", "pixel", "cx", "cy", "principal"];
+    let more = [
+        "focal", "fan", "pitch", "yaw", "roll", "height", "ahead", "place", "rotation", "pose", "a face",
+        "a corner",
+    ];
+    makes.sort_by_key(|(name, _)| !casts.iter().chain(&more).any(|start| name.contains(start)));
+    let at: Vec<usize> = (0..2).map(|_| random.below(sensors.len() + 1)).collect();
+    // Two that cast again in one sensor would forget one another.
+    for (k, make) in makes.iter().enumerate() {
+        match sensors.get(at[k]) {
+            Some(sensor) => wrong.make(bench, *make, *sensor, &mut random),
+            None => {
+                let seed = random.next();
+                for sensor in &sensors {
+                    // The same numbers in all.
+                    wrong.make(bench, *make, *sensor, &mut Random(seed));
+                }
+            }
+        }
+    }
+    for quantity in [
+        Quantity::Face,
+        Quantity::Range,
+        Quantity::Depth,
+        Quantity::Point,
+        Quantity::Normal,
+        Quantity::CosIncidence,
+    ] {
+        if quantity != Quantity::Range && random.below(3) == 0 {
+            wrong.without(quantity);
+        }
+    }
+    if random.below(3) == 0 {
+        wrong.store_single();
+    }
+    wrong
+}
