@@ -33,9 +33,14 @@ pub(super) enum Ended {
 }
 
 /// What a warden does: `$1` is the process group, `$2` the folder. With a line on the pipe this process still needs the folder.
+///
+/// A signal only asks for an end: `gone` waits until the group has no process any more, for at most so many hundredths of a second.
+/// Ended processes that nobody collects, as in a container without an init, count as there until then.
 #[cfg(unix)]
-const WARDEN: &str = "read line; got=$?\n\
-    kill -s INT -- \"-$1\" 2>/dev/null && { sleep 0.2; kill -s KILL -- \"-$1\" 2>/dev/null; }\n\
+const WARDEN: &str = "gone() { n=0; while kill -s 0 -- \"-$1\" 2>/dev/null; do\n\
+        [ $n -lt $2 ] || return 1; n=$((n + 1)); sleep 0.01; done; }\n\
+    read line; got=$?\n\
+    kill -s INT -- \"-$1\" 2>/dev/null && ! gone \"$1\" 20 && kill -s KILL -- \"-$1\" 2>/dev/null && gone \"$1\" 100\n\
     [ \"$got\" -eq 0 ] || rm -rf -- \"$2\"";
 
 /// A process group, which ends when this value goes.
