@@ -52,7 +52,7 @@ same
 echo "$((files - before)) files of a sweep and of a campaign are the same"
 
 # The version and the licence of the committed packs are in them: data/packs/README.md.
-own=(--pack-version 1.0.0 --licence CC0-1.0)
+own=(--pack-version 2.0.0 --licence CC0-1.0)
 for pack in pyramids facets hard; do
     "$b" pack "data/scenes/packs/$pack.toml" "${own[@]}" -o "$work/packs/$pack" >/dev/null
     diff -r "$work/packs/$pack" "data/packs/$pack"

@@ -2,18 +2,6 @@
 
 use std::fmt;
 
-/// The fault that is injected, if any.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Injected(pub(crate) Option<Fault>);
-
-impl Injected {
-    /// Whether it is this fault.
-    #[inline]
-    pub(crate) fn has(self, fault: Fault) -> bool {
-        self.0 == Some(fault)
-    }
-}
-
 /// The part of a result that a fault changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum FaultKind {

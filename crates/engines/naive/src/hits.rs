@@ -3,9 +3,11 @@
 use glam::DVec3;
 use raypencil_scene::{FaceId, Hit};
 
-use crate::fault::{Fault, Injected};
+use crate::fault::Fault;
+use crate::injected::Injected;
 use crate::quaternion::{conjugate, rotate};
 use crate::rays::{PosedSensor, SceneRay};
+use crate::slack::Slack;
 
 /// Rounding error of a side function, relative to the product of the three lengths.
 ///
@@ -74,7 +76,7 @@ impl Spheres {
     }
 
     /// The faces that a ray may meet, in their order.
-    fn near(&self, ray: &SceneRay) -> impl Iterator<Item = usize> {
+    pub(crate) fn near(&self, ray: &SceneRay) -> impl Iterator<Item = usize> {
         let squared_length = ray.q.length_squared();
         let groups = self.of_groups.iter().zip(self.of_faces.chunks(GROUPED_FACES)).enumerate();
         let near = groups.filter(move |(_, (group, _))| group.may_meet(ray, squared_length));
@@ -93,7 +95,7 @@ fn is_within(faults: Injected, sensor: &PosedSensor<'_>, ray: &SceneRay, t: f64)
     } else if faults.has(Fault::PlaneExcluded) {
         t > 1.0
     } else {
-        t >= 1.0
+        t >= 1.0 - faults.size(Slack::PlaneEarlier) + faults.size(Slack::PlaneLater)
     };
     let metres = if faults.has(Fault::MaxRangeLimitsDepth) { sensor.plane } else { ray.q.length() };
     let in_range = if faults.has(Fault::MaxRangeIgnored) {
@@ -101,7 +103,8 @@ fn is_within(faults: Injected, sensor: &PosedSensor<'_>, ray: &SceneRay, t: f64)
     } else if faults.has(Fault::MaxRangeExcluded) {
         t * metres < sensor.max_range
     } else {
-        t * metres <= sensor.max_range
+        let stretch = 1.0 + faults.size(Slack::RangeLonger) - faults.size(Slack::RangeShorter);
+        t * metres <= sensor.max_range * stretch
     };
     from_plane && in_range
 }
@@ -115,6 +118,8 @@ pub(crate) fn first_hit(
     ray: &SceneRay,
 ) -> Option<(usize, f64)> {
     let mut best: Option<(usize, f64)> = None;
+    let farther = 1.0 + faults.size(Slack::FartherFace);
+    let mut nearest = f64::INFINITY;
     for index in spheres.near(ray) {
         let Some(t) = meets(faults, &faces[index], ray) else { continue };
         if !is_within(faults, sensor, ray, t) {
@@ -133,11 +138,23 @@ pub(crate) fn first_hit(
             Some((_, of_best)) if faults.has(Fault::FarthestWins) => t > of_best,
             Some((_, of_best)) => t < of_best,
         };
+        nearest = nearest.min(t);
         if is_better {
             best = Some((index, t));
         }
     }
+    if farther > 1.0 {
+        let all = spheres.near(ray).filter_map(|index| Some((index, meets(faults, &faces[index], ray)?)));
+        let near = all.filter(|(_, t)| is_within(faults, sensor, ray, *t) && *t <= nearest * farther);
+        return near.max_by(|a, b| a.1.total_cmp(&b.1));
+    }
     best
+}
+
+/// The parameter t at which a ray meets the plane of a face.
+pub(crate) fn plane_parameter([a, b, c]: &[DVec3; 3], ray: &SceneRay) -> f64 {
+    let n = (b - a).cross(c - a);
+    n.dot(a - ray.origin) / n.dot(ray.q)
 }
 
 /// The parameter t at which a ray meets the front of a closed triangle.
@@ -153,7 +170,9 @@ pub(crate) fn meets(faults: Injected, &[a, b, c]: &[DVec3; 3], ray: &SceneRay) -
     } else if faults.has(Fault::WindingOfOneQuadrant) && ray.is_lower_right {
         n_dot_q > 0.0
     } else {
-        n_dot_q < 0.0
+        let cosine = |size: f64| size * n.length() * ray.q.length();
+        n_dot_q < 0.0 && -n_dot_q >= cosine(faults.size(Slack::GrazingLost))
+            || n_dot_q > 0.0 && n_dot_q < cosine(faults.size(Slack::GrazingBacksMet))
     };
     if !faces_ray || (faults.has(Fault::SmallDeterminantsDropped) && n_dot_q.abs() < 1e-6) {
         return None;
@@ -184,7 +203,8 @@ pub(crate) fn meets(faults: Injected, &[a, b, c]: &[DVec3; 3], ray: &SceneRay) -
         } else if faults.has(Fault::EdgesWidened) {
             side >= -1e-6 * (sides[0] + sides[1] + sides[2])
         } else {
-            side >= -error
+            let moved = faults.size(Slack::EdgesNarrower) - faults.size(Slack::EdgesWider);
+            side >= moved * (sides[0] + sides[1] + sides[2]) - error
         };
         if !is_inside {
             return None;
@@ -233,8 +253,8 @@ pub(crate) fn describe(
     let n = if n == DVec3::ZERO { -ray.q } else { n };
     let rotation = sensor.pose.rotation;
 
-    let true_range = t * ray.q.length();
-    let true_depth = t * sensor.plane;
+    let true_range = t * ray.q.length() * (1.0 + faults.size(Slack::RangeScaled));
+    let true_depth = t * sensor.plane * (1.0 + faults.size(Slack::DepthScaled));
     let range = if faults.has(Fault::DepthForRange) {
         true_depth
     } else if faults.has(Fault::TForRange) {
@@ -252,9 +272,11 @@ pub(crate) fn describe(
     } else if faults.has(Fault::NormalReversed) {
         -n / n.length()
     } else {
-        n / n.length()
+        let unit = n / n.length();
+        let turn = faults.size(Slack::NormalTurned);
+        if turn > 0.0 { (unit + turn * unit.any_orthonormal_vector()).normalize() } else { unit }
     };
-    let point = ray.origin + ray.q * t;
+    let point = ray.origin + ray.q * (t * (1.0 + faults.size(Slack::PointMoved)));
     let point = if faults.has(Fault::PointInSensorFrame) {
         rotate(conjugate(rotation), point - sensor.pose.position, false)
     } else {
@@ -268,6 +290,7 @@ pub(crate) fn describe(
         point,
         normal,
         depth,
-        cos_incidence: -n.dot(towards) / (n.length() * towards.length()),
+        cos_incidence: -n.dot(towards) / (n.length() * towards.length())
+            * (1.0 + faults.size(Slack::IncidenceScaled)),
     }
 }

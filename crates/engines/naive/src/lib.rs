@@ -13,20 +13,25 @@
 //! hits.rs                  the first hit of a ray
 //! light.rs                 visibility and flux
 //! fault.rs                 the mistakes that can be injected
+//! slack.rs                 clauses that are kept with a tolerance
+//! injected.rs              which of both is there
 //! clause.rs                the clauses of the contract
 //! ```
 
 mod clause;
 mod fault;
 mod hits;
+mod injected;
 mod light;
 mod naive;
 mod quaternion;
 mod rays;
+mod slack;
 
 pub use clause::{Clause, ClauseKind};
 pub use fault::{Fault, FaultKind};
-pub use naive::Naive;
+pub use naive::{Lax, Naive};
+pub use slack::{Slack, SlackUnit};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

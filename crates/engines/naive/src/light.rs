@@ -9,30 +9,40 @@ use raypencil_scene::{
 };
 
 use crate::fault::Fault;
+use crate::hits::Spheres;
+use crate::injected::Injected;
 use crate::quaternion::{conjugate, rotate};
+use crate::rays::SceneRay;
+use crate::slack::Slack;
 
 /// The light that a scene's camera receives, computed with a fault or without.
 struct Light<'a> {
-    fault: Option<Fault>,
+    faults: Injected,
     scene: &'a Scene,
     faces: &'a [[DVec3; 3]],
+    spheres: &'a Spheres,
 }
 
 /// The returns of a beam's pencils, and their flux on the camera's image, W.
 pub(crate) fn returns(
-    fault: Option<Fault>,
+    faults: Injected,
     scene: &Scene,
-    faces: &[[DVec3; 3]],
+    (faces, spheres): (&[[DVec3; 3]], &Spheres),
     index: usize,
     map: &SensorMap,
 ) -> (Returns, Image<f64>) {
-    Light { fault, scene, faces }.returns(index, map)
+    Light { faults, scene, faces, spheres }.returns(index, map)
 }
 
 impl Light<'_> {
     /// Whether this fault is injected.
     fn has(&self, fault: Fault) -> bool {
-        self.fault == Some(fault)
+        self.faults.has(fault)
+    }
+
+    /// The size of this slack; 0 if it is not there.
+    fn size(&self, slack: Slack) -> f64 {
+        self.faults.size(slack)
     }
 
     /// The returns of beam `index` from the hits of its map, and their flux on the image, W.
@@ -103,6 +113,22 @@ impl Light<'_> {
         let place = [0, 1].map(|axis: usize| {
             let at = camera.focal_length * seen[axis] / depth / camera.pixel_pitch[axis]
                 + camera.principal_point[axis];
+            let moved = match axis {
+                0 => self.size(Slack::LandsRight) - self.size(Slack::LandsLeft),
+                _ => self.size(Slack::LandsBelow) - self.size(Slack::LandsAbove),
+            };
+            at + moved
+        });
+        let border = self.size(Slack::ImageWider) - self.size(Slack::ImageNarrower);
+        let place = [0, 1].map(|axis: usize| {
+            let at = place[axis];
+            let size = f64::from([camera.width, camera.height][axis]);
+            let is_near = at >= -border && at < size + border;
+            let at = match border {
+                0.0 => at,
+                _ if is_near => at.clamp(0.0, size - 0.5),
+                _ => -1.0,
+            };
             let at = if self.has(Fault::PixelRounded) { (at - 0.5).floor() + 1.0 } else { at.floor() };
             let last = f64::from([camera.width, camera.height][axis] - 1);
             if self.has(Fault::OffImageClamped) { at.clamp(0.0, last) } else { at }
@@ -118,7 +144,8 @@ impl Light<'_> {
             pixel = Some(Pixel { i: j.min(camera.width - 1), j: i.min(camera.height - 1) });
         }
         let too_far = self.has(Fault::CameraRangeLimits) && distance > camera.max_range;
-        let visible = (cos_view > 0.0 || self.has(Fault::SeenFromBehind))
+        let least = self.size(Slack::UnseenAtGrazing) - self.size(Slack::SeenFromBehindALittle);
+        let visible = (cos_view > least || self.has(Fault::SeenFromBehind))
             && pixel.is_some()
             && !too_far
             && !self.is_hidden(hit, centre, to_point, (camera.focal_length / depth).max(0.0));
@@ -138,7 +165,12 @@ impl Light<'_> {
     /// Whether a face, front or back, meets the segment c + u (P - c), f_c / r <= u < 1. A face through P does not
     /// hide P: neither the hit face, nor faces that tie with it, nor backs at the same place.
     fn is_hidden(&self, hit: &Hit, centre: DVec3, to_point: DVec3, nearest: f64) -> bool {
-        let nearest = if self.has(Fault::OccludersBeforePlane) { 0.0 } else { nearest };
+        let nearest = if self.has(Fault::OccludersBeforePlane) {
+            0.0
+        } else {
+            nearest * (1.0 - self.size(Slack::ShadowPastPlane))
+                + self.size(Slack::ShadowStopsShort) * (1.0 - nearest)
+        };
         let distance = to_point.length();
         let at_point = 1e-12 * (1.0 + (distance + centre.length()) / distance);
         let faces_at_point_hide = self.has(Fault::FacesAtPointHide);
@@ -149,9 +181,14 @@ impl Light<'_> {
         } else if self.has(Fault::ShadowEpsilon) {
             1.0 - 1e-3 / distance
         } else {
-            1.0 - at_point
+            let away = self.size(Slack::ShadowStartsAway);
+            let behind = self.size(Slack::ShadowFromBehind);
+            if away > 0.0 { 1.0 - away.max(at_point) } else { 1.0 - at_point + behind }
         };
-        self.faces.iter().enumerate().any(|(index, &[a, b, c])| {
+        let moved = self.size(Slack::OccludersNarrower) - self.size(Slack::OccludersWider);
+        let way = SceneRay { origin: centre, q: to_point, is_lower_right: false };
+        self.spheres.near(&way).any(|index| {
+            let [a, b, c] = self.faces[index];
             let n = (b - a).cross(c - a);
             let towards = n.dot(to_point);
             if index == hit.face.0 as usize
@@ -163,7 +200,9 @@ impl Light<'_> {
             let u = n.dot(a - centre) / towards;
             let corners = [a - centre, b - centre, c - centre];
             let sides = [0, 1, 2].map(|k: usize| to_point.dot(corners[k].cross(corners[(k + 1) % 3])));
-            let is_inside = sides.iter().all(|side| *side <= 0.0) || sides.iter().all(|side| *side >= 0.0);
+            let least = moved * (sides[0] + sides[1] + sides[2]).abs();
+            let is_inside =
+                sides.iter().all(|side| -*side >= least) || sides.iter().all(|side| *side >= least);
             is_inside && u >= nearest && u < farthest && (faces_at_point_hide || (u - 1.0).abs() > at_point)
         })
     }
@@ -208,6 +247,7 @@ impl Light<'_> {
         let of_centre = q.z / q.length();
         let transmission =
             if self.has(Fault::LensTransmissionOmitted) { 1.0 } else { camera.lens.transmission };
+        let power = power * (1.0 + self.size(Slack::FluxScaled));
         let common = power * reflectivity * transmission * cos_theta / (depth * depth);
         let model = scene.flux_model();
         match if self.has(Fault::FluxOfOtherModel) { model.other() } else { model } {

@@ -3,7 +3,8 @@
 use glam::DVec3;
 use raypencil_scene::{Beam, Camera, Pose, SensorId};
 
-use crate::fault::{Fault, Injected};
+use crate::fault::Fault;
+use crate::injected::Injected;
 use crate::quaternion::{conjugate, rotate};
 
 /// A camera or a beam, with its pose and its rays.
@@ -14,8 +15,8 @@ pub(crate) struct PosedSensor<'a> {
     /// Distance of the SPP along the normal axis, f_c or g, metres.
     pub(crate) plane: f64,
     pub(crate) max_range: f64,
-    /// Origin and direction of the ray of cell (i, j), sensor frame.
-    pub(crate) ray: &'a (dyn Fn(u32, u32) -> [DVec3; 2] + Sync),
+    /// Origin and direction of the ray of cell (i, j), shifted by so many cells to the right and down, sensor frame.
+    pub(crate) ray: &'a (dyn Fn(u32, u32, [f64; 2]) -> [DVec3; 2] + Sync),
 }
 
 /// A ray in the scene.
@@ -28,9 +29,9 @@ pub(crate) struct SceneRay {
 }
 
 impl PosedSensor<'_> {
-    /// The ray of cell (i, j), from the sensor into the scene.
-    pub(crate) fn scene_ray(&self, faults: Injected, i: u32, j: u32) -> SceneRay {
-        let [start, q] = (self.ray)(i, j);
+    /// The ray of cell (i, j), shifted by so many cells, from the sensor into the scene.
+    pub(crate) fn scene_ray(&self, faults: Injected, (i, j): (u32, u32), shift: [f64; 2]) -> SceneRay {
+        let [start, q] = (self.ray)(i, j, shift);
         let is_taken_as_unit = faults.has(Fault::QuaternionTakenAsUnit);
         let rotated = |vector| rotate(self.pose.rotation, vector, is_taken_as_unit);
         let ray = SceneRay {
@@ -52,8 +53,13 @@ pub(crate) fn camera_pose(faults: Injected, pose: Pose) -> Pose {
     Pose { rotation, ..pose }
 }
 
-/// Column, row and the position of the ray in its cell, as a share from the corner.
-fn sample(faults: Injected, (i, j): (u32, u32), (width, height): (u32, u32)) -> (f64, f64, f64) {
+/// Column, row and the position of the ray in its cell across and down, as shares from the corner.
+fn sample(
+    faults: Injected,
+    (i, j): (u32, u32),
+    (width, height): (u32, u32),
+    shift: [f64; 2],
+) -> (f64, f64, [f64; 2]) {
     let i = if faults.has(Fault::ColumnOffByOne) {
         i + 1
     } else if faults.has(Fault::ColumnsReversed) {
@@ -63,12 +69,12 @@ fn sample(faults: Injected, (i, j): (u32, u32), (width, height): (u32, u32)) -> 
     };
     let j = if faults.has(Fault::RowsBottomUp) { height - 1 - j } else { j };
     let middle = if faults.has(Fault::HalfCellShift) { 0.0 } else { 0.5 };
-    (f64::from(i), f64::from(j), middle)
+    (f64::from(i), f64::from(j), shift.map(|shift| middle + shift))
 }
 
 /// A pixel's ray: from the projection centre along ((i + 1/2 - c_x) p_x, (j + 1/2 - c_y) p_y, f_c).
-pub(crate) fn pixel_ray(faults: Injected, camera: &Camera, i: u32, j: u32) -> [DVec3; 2] {
-    let (i, j, middle) = sample(faults, (i, j), (camera.width, camera.height));
+pub(crate) fn pixel_ray(faults: Injected, camera: &Camera, cell: (u32, u32), shift: [f64; 2]) -> [DVec3; 2] {
+    let (i, j, [across, down]) = sample(faults, cell, (camera.width, camera.height), shift);
     let [mut centre_x, mut centre_y] = camera.principal_point;
     if faults.has(Fault::PrincipalPointRounded) {
         (centre_x, centre_y) = (centre_x.round(), centre_y.round());
@@ -77,15 +83,15 @@ pub(crate) fn pixel_ray(faults: Injected, camera: &Camera, i: u32, j: u32) -> [D
     if faults.has(Fault::PitchesSwapped) {
         (pitch_x, pitch_y) = (pitch_y, pitch_x);
     }
-    let x = (i + middle - centre_x) * pitch_x;
-    let y = (j + middle - centre_y) * pitch_y;
+    let x = (i + across - centre_x) * pitch_x;
+    let y = (j + down - centre_y) * pitch_y;
     [DVec3::ZERO, DVec3::new(x, y, camera.focal_length)]
 }
 
 /// A pencil's ray: from (0, y_j, 0) on the focal axis along (x_i, 0, g), where x_i = w (2i + 1 - columns) /
 /// columns and y_j = T (2j + 1 - rows) / (2 rows).
-pub(crate) fn pencil_ray(faults: Injected, beam: &Beam, i: u32, j: u32) -> [DVec3; 2] {
-    let (i, j, middle) = sample(faults, (i, j), (beam.columns, beam.rows));
+pub(crate) fn pencil_ray(faults: Injected, beam: &Beam, cell: (u32, u32), shift: [f64; 2]) -> [DVec3; 2] {
+    let (i, j, [across, down]) = sample(faults, cell, (beam.columns, beam.rows), shift);
     let g = beam.grid_distance;
     let (mut half_width, mut half_thickness) = (beam.half_width, 0.5 * beam.thickness);
     if faults.has(Fault::FanAndThicknessSwapped) {
@@ -106,8 +112,8 @@ pub(crate) fn pencil_ray(faults: Injected, beam: &Beam, i: u32, j: u32) -> [DVec
         (half_width * from_edge_to_edge(i, columns), half_thickness * from_edge_to_edge(j, rows))
     } else {
         (
-            half_width * (2.0 * (i + middle) - columns) / columns,
-            half_thickness * (2.0 * (j + middle) - rows) / rows,
+            half_width * (2.0 * (i + across) - columns) / columns,
+            half_thickness * (2.0 * (j + down) - rows) / rows,
         )
     };
     if faults.has(Fault::PencilsFromCentre) {

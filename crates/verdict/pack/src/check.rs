@@ -13,11 +13,14 @@ use raypencil_referee::Referee;
 use raypencil_scene::{Place, Precision, Progress, Scene, SensorId};
 use raypencil_scene_io::{LoadedScene, SceneIoError, Subject, probe_command, quoted, scene_sha256};
 
-use crate::blind::blind_scene;
+use crate::bench::Edition;
+use crate::blind::blind_scene_of;
 use crate::check_report::BundleFindings;
-use crate::claims::{check_clauses, check_facts};
+use crate::claims::{check_clauses, check_facts, check_sharpness};
 use crate::declarations::Declarations;
-use crate::manifest::{FileRole, FileType, MANIFEST_NAME, Manifest, ManifestFile, PackKind, pack_fault};
+use crate::manifest::{
+    FileRole, FileType, MANIFEST_NAME, Manifest, ManifestFile, ManifestSharpness, PackKind, pack_fault,
+};
 use crate::provenance::{ProvenanceError, note};
 use crate::published::{PackIdentity, PublishedPack};
 use crate::rays::{rays_name, rays_sha256};
@@ -84,6 +87,8 @@ pub struct Checked {
     pub verified: Verified,
     /// What was declared about the candidate, by its note, too.
     pub declared: Declarations,
+    /// How large a tolerance of each clause the pack notices, by its manifest.
+    pub sharpness: Vec<ManifestSharpness>,
     /// The sets of rays of the pack, which are checked apart; empty if it has none, or if nobody asked. One without items is not
     /// given.
     pub ray_sets: Vec<BundleFindings>,
@@ -227,7 +232,10 @@ pub fn check_pack_by(
 
     let truth = match (manifest.kind, manifest.blind_seed) {
         (PackKind::Blind, Some(seed)) => {
-            if scene_sha256(&blind_scene(seed)?) != sha256 {
+            let is_of_seed = |edition| -> Result<bool, CheckError> {
+                Ok(scene_sha256(&blind_scene_of(seed, edition)?) == sha256)
+            };
+            if !is_of_seed(Edition::Second)? && !is_of_seed(Edition::First)? {
                 let found = format!("its scene differs from that of seed {seed}");
                 let expected = format!("a blind pack of this version, {}", env!("CARGO_PKG_VERSION"));
                 return Err(answers(found, &expected));
@@ -276,6 +284,7 @@ pub fn check_pack_by(
     }
     if !is_known {
         check_clauses(&manifest, &scene, share, progress)
+            .and_then(|()| check_sharpness(&manifest, &scene, share, progress))
             .map_err(|fault| pack_fault(&manifest_file, fault))?;
     }
     let check = check(&truth, &recorded, progress);
@@ -315,6 +324,7 @@ pub fn check_pack_by(
         pack: identity,
         verified,
         declared,
+        sharpness: manifest.sharpness,
         ray_sets,
     })
 }

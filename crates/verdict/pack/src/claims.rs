@@ -2,10 +2,12 @@
 
 use raypencil_files::Fault;
 use raypencil_naive::Clause;
-use raypencil_scene::{Progress, Scene, Silent};
+use raypencil_scene::{Precision, Progress, Scene, Silent};
 
+use crate::bench::has_bench;
 use crate::clauses::{can_count_clauses, clause_rays, needed_clauses, tests};
-use crate::manifest::{Manifest, PackKind};
+use crate::manifest::{Manifest, ManifestSharpness, PackKind};
+use crate::sharpness::sharpness;
 use crate::verification::Verification;
 
 /// Most tests of a ray against a face for which clauses are counted again unasked. Tuned: a second or two.
@@ -31,6 +33,35 @@ pub(crate) fn check_facts(manifest: &Manifest, scene: &Scene) -> Result<(), Faul
     let stated: Vec<&str> = manifest.clauses.iter().map(|one| one.clause.as_str()).collect();
     if !stated.is_empty() && stated != needed {
         return Err(Fault::new("clauses", stated.join(", "), needed.join(", ")));
+    }
+    Ok(())
+}
+
+/// Refuses sizes of tolerances that are not those which the scene's bench notices. They are measured if all of the pack is to be verified.
+pub(crate) fn check_sharpness(
+    manifest: &Manifest,
+    scene: &Scene,
+    share: Verification,
+    progress: &dyn Progress,
+) -> Result<(), Fault> {
+    if manifest.sharpness.is_empty() || share != Verification::All {
+        return Ok(());
+    }
+    progress.stage("measuring which tolerances are noticed");
+    let of = |precision| match has_bench(scene) {
+        true => sharpness(scene, precision, &Silent)
+            .map_err(|error| Fault::new("sharpness", error.to_string(), "a bench")),
+        false => Ok(Vec::new()),
+    };
+    let measured = of(Precision::F64)?.into_iter().zip(of(Precision::F32)?);
+    let measured: Vec<ManifestSharpness> =
+        measured.map(|(double, single)| ManifestSharpness::new(&double, &single)).collect();
+    let words = |one: Option<&ManifestSharpness>| one.map_or("nothing".into(), |one| format!("{one:?}"));
+    for at in 0..measured.len().max(manifest.sharpness.len()) {
+        let (own, stated) = (measured.get(at), manifest.sharpness.get(at));
+        if own != stated {
+            return Err(Fault::new(format!("sharpness[{at}]"), words(stated), words(own)));
+        }
     }
     Ok(())
 }

@@ -10,6 +10,7 @@
 //! bench/                             rays at the limits of the contract, added to a scene
 //! split_mix -> blind                 scenes from a seed
 //! clauses                            how many rays decide each clause of the contract
+//! sharpness                          how large a tolerance of each clause is noticed
 //! canonical_nan, units               values and units of channels
 //! manifest/                          manifest.json: structure, paths, consistency, reading, writing
 //! margins                            how far each ray is from another answer
@@ -28,11 +29,11 @@
 //! use raypencil_pack::check_pack;
 //! use raypencil_scene::Silent;
 //!
-//! // A pack is a perfect candidate: all rays agree exactly. 7,936 are those of the scene, and 2,242 of the bench.
+//! // A pack is a perfect candidate: all rays agree exactly. 7,936 are those of the scene, and 2,546 of the bench.
 //! let pack = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../data/packs/pyramids");
 //! let checked = check_pack(&pack, &pack, None, &Silent)?;
-//! assert_eq!(checked.check.compared(), 96 * 72 + 2 * 128 * 4 + 2242);
-//! assert!(checked.document().screen().contains("✓ 10,178 rays agree with the exact answers: 10,178 exact"));
+//! assert_eq!(checked.check.compared(), 96 * 72 + 2 * 128 * 4 + 2546);
+//! assert!(checked.document().screen().contains("✓ 10,482 rays agree with the exact answers: 10,482 exact"));
 //! # Ok::<(), raypencil_pack::CheckError>(())
 //! ```
 
@@ -53,6 +54,7 @@ mod note_values;
 mod provenance;
 mod published;
 mod rays;
+mod sharpness;
 mod split_mix;
 mod units;
 mod verification;
@@ -73,11 +75,12 @@ pub use input::{
 };
 pub use manifest::{
     ChannelType, FileRole, FileType, MANIFEST_FORMAT, Manifest, ManifestChannel, ManifestClause,
-    ManifestFile, ManifestScene, ManifestSensor, PackKind,
+    ManifestFile, ManifestScene, ManifestSensor, ManifestSharpness, PackKind,
 };
 pub use note_values::{ChannelNames, MissNumber};
 pub use provenance::{Arithmetic, MonteCarloTotal, Provenance, ProvenanceError, note, precision_of};
 pub use published::{PUBLISHED, PackIdentity, PackLabel, PublishedPack};
+pub use sharpness::{Sharpness, sharpness};
 pub use verification::{DRAWN, MAX_ALL, Verification};
 pub use write::{PackError, write_pack, write_questions};
 

@@ -67,8 +67,24 @@ pub struct PublishedPack {
     pub sha256: &'static str,
 }
 
-/// The packs of `data/packs` with answers to a scene; `data/packs/SHA256SUMS` has the same digests, for `sha256sum -c`.
-pub const PUBLISHED: [PublishedPack; 3] = [
+/// The packs with answers to a scene that are or were in `data/packs`, the present ones first; `data/packs/SHA256SUMS` has their
+/// digests, for `sha256sum -c`.
+pub const PUBLISHED: [PublishedPack; 6] = [
+    PublishedPack {
+        name: "pyramids",
+        version: "2.0.0",
+        sha256: "b336e0f22b68035a612939484b427637f739863ee0f0f84c62faa076f929ecf6",
+    },
+    PublishedPack {
+        name: "facets",
+        version: "2.0.0",
+        sha256: "1ac268e7b897873dcf18c7ec0293ef2c69cd41573185470cde40f8942c9f891d",
+    },
+    PublishedPack {
+        name: "hard",
+        version: "2.0.0",
+        sha256: "65fe5831e073415b72577c6a7507d1a58ae7eb3e1784030de6c1f2602f83afac",
+    },
     PublishedPack {
         name: "pyramids",
         version: "1.0.0",
@@ -93,14 +109,18 @@ pub struct PackIdentity {
     pub sha256: String,
     /// Version and licence, by its own word.
     pub label: PackLabel,
-    /// The published pack of the name that it has.
+    /// The published pack of the name that it has: of its version, if there is one, else the present one.
     pub of_that_name: Option<PublishedPack>,
 }
 
 impl PackIdentity {
     /// The identity of a pack by the digest of its manifest, and what the manifest says.
     pub(crate) fn new(sha256: String, name: &str, label: PackLabel) -> Self {
-        let of_that_name = PUBLISHED.into_iter().find(|published| published.name == name);
+        let of_name = || PUBLISHED.into_iter().filter(|published| published.name == name);
+        let of_version = |one: &PublishedPack| label.version.as_deref() == Some(one.version);
+        // An earlier one that is still in use is known as well.
+        let of_that_name = of_name().find(|one| one.sha256 == sha256);
+        let of_that_name = of_that_name.or_else(|| of_name().find(of_version)).or_else(|| of_name().next());
         Self { sha256, label, of_that_name }
     }
 
@@ -159,12 +179,12 @@ mod tests {
         let published = PUBLISHED[0];
         let own = PackIdentity::new(published.sha256.into(), published.name, PackLabel::NONE);
         assert!(own.is_published());
-        assert_eq!(own.words(), "pyramids 1.0.0, as it is published");
+        assert_eq!(own.words(), "pyramids 2.0.0, as it is published");
         let forged = PackIdentity::new("0".repeat(64), published.name, PackLabel::NONE);
         assert!(!forged.is_published());
         assert_eq!(
             forged.words(),
-            "sha256 000000000000..., which is not that of pyramids 1.0.0 as it is published"
+            "sha256 000000000000..., which is not that of pyramids 2.0.0 as it is published"
         );
         // The digest alone, under another name, is no published pack either: the digest is of a file that has the name.
         let other = PackIdentity::new("0".repeat(64), "yard", PackLabel::NONE);

@@ -15,19 +15,21 @@ use std::path::Path;
 use raypencil_files::{Attributes, FileError, FolderError, create_folder, put_in_place};
 use raypencil_judge::Certified;
 use raypencil_referee::{Format, Referee};
-use raypencil_scene::{Progress, Scene, SceneError, SensorId};
+use raypencil_scene::{Precision, Progress, Scene, SceneError, SensorId};
 use raypencil_scene_io::{Subject, scene_sha256, write_resolved};
 
 use crate::arrays::ArrayWriter;
+use crate::bench::has_bench;
 use crate::clauses::{MIN_RAYS_PER_CLAUSE, can_count_clauses, clause_rays};
 use crate::exr_map::write_exr_map;
 use crate::manifest::{
     FileRole, MANIFEST_FORMAT, Manifest, ManifestClause, ManifestFile, ManifestScene, ManifestSensor,
-    PackKind,
+    ManifestSharpness, PackKind,
 };
 use crate::margins::SensorMargins;
 use crate::published::PackLabel;
 use crate::rays::write_rays;
+use crate::sharpness::{Sharpness, sharpness};
 
 /// Why a pack could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -57,6 +59,17 @@ pub enum PackError {
         name: String,
         /// Keys of the clauses.
         untested: Vec<String>,
+    },
+    /// A blind pack whose bench lets too large tolerances pass.
+    #[error(
+        "{name}: these tolerances of a renderer are not noticed at {}; expected a bench that notices smaller ones. Choose another seed",
+        blunt.join(", ")
+    )]
+    Blunt {
+        /// Name of the scene.
+        name: String,
+        /// Key and size of each.
+        blunt: Vec<String>,
     },
     /// Values that the referee could not round within its limit of 2048 bits.
     #[error(
@@ -92,8 +105,8 @@ pub enum PackError {
 /// let subject = blind_subject(7)?;
 /// write_pack(&subject, Some(7), &PackLabel::NONE, folder, &Silent)?;
 /// let manifest = Manifest::read_verified(folder)?;
-/// // Scene, terrain, and the rays of the camera and seven beams: ten files, none with answers.
-/// assert_eq!((manifest.kind, manifest.files.len()), (PackKind::Blind, 10));
+/// // Scene, terrain, and the rays of the camera and ten beams: 13 files, none with answers.
+/// assert_eq!((manifest.kind, manifest.files.len()), (PackKind::Blind, 13));
 /// // Each clause of the contract is tested.
 /// assert!(manifest.clauses.iter().all(|clause| clause.rays >= raypencil_pack::MIN_RAYS_PER_CLAUSE));
 /// assert!(manifest.files.iter().all(|file| file.role != FileRole::Answers));
@@ -126,6 +139,18 @@ pub fn write_pack(
         return Err(PackError::Untested { name: subject.name.clone(), untested });
     }
 
+    let sharpness = if is_counted { measured(scene, progress)? } else { Vec::new() };
+    let blunt = sharpness.iter().filter(|(double, _)| !double.suffices());
+    let blunt: Vec<String> = blunt
+        .map(|(double, _)| {
+            let size = double.noticed.map_or("any size".into(), |size| format!("{size:e}"));
+            format!("{} ({size} {})", double.slack.key(), double.slack.unit().words())
+        })
+        .collect();
+    if is_blind && !blunt.is_empty() {
+        return Err(PackError::Blunt { name: subject.name.clone(), blunt });
+    }
+
     let kind = if is_blind { PackKind::Blind } else { PackKind::Answers };
     let clauses = clauses
         .iter()
@@ -137,8 +162,21 @@ pub fn write_pack(
         licence: label.licence.clone(),
         blind_seed,
         clauses,
+        sharpness: sharpness.iter().map(|(double, single)| ManifestSharpness::new(double, single)).collect(),
         ..manifest
     })
+}
+
+/// The sharpness of a scene's bench in both precisions; nothing for a scene without one.
+fn measured(scene: &Scene, progress: &dyn Progress) -> Result<Vec<(Sharpness, Sharpness)>, PackError> {
+    if !has_bench(scene) {
+        return Ok(Vec::new());
+    }
+    let of = |precision: Precision| {
+        sharpness(scene, precision, progress)
+            .map_err(|source| PackError::NoBench { name: "the bench".into(), source })
+    };
+    Ok(of(Precision::F64)?.into_iter().zip(of(Precision::F32)?).collect())
 }
 
 /// Writes scene, terrain and rays, and no answers. Unlike a blind pack it may be of any scene, and a check computes the answers
@@ -201,6 +239,7 @@ fn write_files(
         blind_seed: None,
         sensors: scene.sensors().map(sensor).collect(),
         clauses: Vec::new(),
+        sharpness: Vec::new(),
         files,
     });
     progress.stage("putting the pack in its place");

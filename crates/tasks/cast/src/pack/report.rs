@@ -64,6 +64,8 @@ impl RayPackChecked {
             headline: None,
             why: self.why.clone(),
             notes: vec![format!("{}.", counts_text(&self.answers))],
+            sharpness: None,
+            sizes: None,
             facts: Vec::new(),
             of_form: Map::new(),
             pictures: String::new(),

@@ -42,6 +42,12 @@ impl AddedFaces {
         self.triangles.extend(triangles.into_iter().map(|triangle| triangle.map(vertex)));
     }
 
+    /// Adds triangles of the scene's frame whose corners are numbers of f32.
+    pub(super) fn extend_scene(&mut self, triangles: impl IntoIterator<Item = Triangle>) {
+        let vertex = |corner: DVec3| corner.as_vec3().to_array();
+        self.triangles.extend(triangles.into_iter().map(|triangle| triangle.map(vertex)));
+    }
+
     /// A mesh with these faces after its own, of a material of this reflectivity.
     pub(super) fn added_to(&self, mesh: &Mesh, reflectivity: f64) -> Result<Mesh, SceneError> {
         let (mut vertices, mut faces) = (mesh.vertices().to_vec(), mesh.faces().to_vec());

@@ -7,20 +7,25 @@
 //! rows.rs        rows of faces, each for one boundary of the contract
 //! beams.rs       the beams before them, of dyadic numbers and exact rotations
 //! furniture.rs   plates before the camera and the ordinary beams
+//! bites.rs       beams whose pencils pass limits at given distances
+//! lattice.rs     corners in f32 for a wanted value
 //! faces.rs       how faces are added
 //! ```
 
 mod beams;
+mod bites;
 mod faces;
 mod furniture;
+mod lattice;
 mod rows;
 
 use std::sync::Arc;
 
-use raypencil_scene::{Scene, SceneError};
+use raypencil_scene::{Beam, Camera, Mounted, Scene, SceneError};
 use raypencil_scene_io::{Subject, scene_sha256};
 
 use crate::bench::beams::bench_beams;
+use crate::bench::bites::biting_beams;
 use crate::bench::faces::AddedFaces;
 use crate::bench::furniture::{backward_beam, before_beam, before_camera};
 use crate::write::PackError;
@@ -28,8 +33,38 @@ use crate::write::PackError;
 /// Reflectivity of the bench: unlike that of the ground, so that a flux tells the material.
 const BENCH_REFLECTIVITY: f64 = 0.6;
 
+/// Which bench it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Edition {
+    /// That of the packs with the version 1.0.0: each clause is met, at a distance of its own.
+    First,
+    /// With beams that pass each limit at distances down to what rounding excuses.
+    Second,
+}
+
+/// Whether a scene ends in a bench: its last beams are of those sizes.
+pub(crate) fn has_bench(scene: &Scene) -> bool {
+    let sizes = |beams: &[Mounted<Beam>]| -> Vec<(u32, u32)> {
+        beams.iter().map(|beam| (beam.sensor.columns, beam.sensor.rows)).collect()
+    };
+    let Some(first) = scene.beams().len().checked_sub(BENCH_BEAMS) else { return false };
+    let mut faces = AddedFaces::default();
+    let own = added_beams(scene.camera(), Edition::Second, &mut faces);
+    sizes(&scene.beams()[first..]) == sizes(&own)
+}
+
+/// The beams of a bench, each before its faces.
+fn added_beams(camera: &Mounted<Camera>, edition: Edition, faces: &mut AddedFaces) -> Vec<Mounted<Beam>> {
+    let mut beams = vec![backward_beam(camera, faces)];
+    beams.extend(bench_beams(faces));
+    if edition == Edition::Second {
+        beams.extend(biting_beams(camera, faces));
+    }
+    beams
+}
+
 /// Number of beams that [`with_bench`] adds.
-pub const BENCH_BEAMS: usize = 4;
+pub const BENCH_BEAMS: usize = 7;
 
 /// A subject whose scene has a bench, with the digest of that scene.
 ///
@@ -58,6 +93,11 @@ pub fn benched(subject: Subject) -> Result<Subject, PackError> {
 /// # Errors
 /// More than 64 beams in all.
 pub fn with_bench(scene: &Scene) -> Result<Scene, SceneError> {
+    with_bench_of(scene, Edition::Second)
+}
+
+/// A scene with the bench of an edition.
+pub(crate) fn with_bench_of(scene: &Scene, edition: Edition) -> Result<Scene, SceneError> {
     let mut faces = AddedFaces::default();
     let camera = *scene.camera();
     before_camera(&camera, &mut faces);
@@ -65,8 +105,7 @@ pub fn with_bench(scene: &Scene) -> Result<Scene, SceneError> {
         before_beam(beam, &camera, &mut faces);
     }
     let mut beams = scene.beams().to_vec();
-    beams.push(backward_beam(&camera, &mut faces));
-    beams.extend(bench_beams(&mut faces));
+    beams.extend(added_beams(&camera, edition, &mut faces));
     let mesh = faces.added_to(scene.mesh(), BENCH_REFLECTIVITY)?;
     Scene::new(Arc::new(mesh), camera, beams, scene.atmosphere(), scene.flux_model())?
         .with_ray_sets(scene.ray_sets().to_vec())

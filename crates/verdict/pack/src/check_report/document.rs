@@ -40,8 +40,8 @@ impl CheckFindings {
             ("why".to_string(), self.why.as_deref().into()),
             ("bundles".to_string(), self.bundles.iter().map(BundleFindings::to_json).collect()),
         ]);
-        let absent =
-            ["scene", "verified", "diagnosis", "triangles"].map(|key| (key.to_string(), Value::Null));
+        let absent = ["scene", "verified", "diagnosis", "sharpness", "triangles"]
+            .map(|key| (key.to_string(), Value::Null));
         data.extend(absent);
         data.extend([("blind".to_string(), false.into()), ("unknown_channels".to_string(), json!([]))]);
         data.extend(self.of_form.clone());
@@ -61,6 +61,9 @@ impl CheckFindings {
             let whys = sets.filter_map(|bundle| Some((&bundle.name, bundle.why.as_ref()?)));
             remarks.extend(whys.map(|(name, why)| format!("Why in {name}: {why}.")));
         }
+        let agrees = verdict == "agrees";
+        remarks.extend(self.sharpness.clone().filter(|_| agrees));
+        let sizes = self.sizes.clone().filter(|_| agrees);
         let mut facts = vec![("Candidate", self.candidate.clone())];
         facts.extend(arithmetic.map(|arithmetic| ("Arithmetic", arithmetic.to_string())));
         facts.push(("Pack", self.pack.clone()));
@@ -80,20 +83,24 @@ impl CheckFindings {
             remarks,
             explanation: Vec::new(),
             counts: Vec::new(),
-            blocks: vec![
-                Block::Table { title: "Every quantity", grid: grid(&self.totals) },
-                Block::Findings {
+            blocks: [
+                Some(Block::Table { title: "Every quantity", grid: grid(&self.totals) }),
+                sizes,
+                Some(Block::Findings {
                     title: "Defects",
                     groups: self.bundles.iter().filter_map(BundleFindings::group).collect(),
                     worst: self.worst.into_iter().take(MAX_SHOWN_DEFECTS).collect(),
-                },
-                Block::Text { title: "", lines: self.notes, room: Room::Everywhere },
-                Block::Pictures {
+                }),
+                Some(Block::Text { title: "", lines: self.notes, room: Room::Everywhere }),
+                Some(Block::Pictures {
                     title: "Range maps beside the exact ones",
                     html: self.pictures,
                     stays: false,
-                },
-            ],
+                }),
+            ]
+            .into_iter()
+            .flatten()
+            .collect(),
             suites: vec![suite],
             facts,
             format: FORMAT,

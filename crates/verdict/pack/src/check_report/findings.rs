@@ -4,7 +4,7 @@
 //! items: the quantities of its rays, or the clauses of loading.
 
 use raypencil_judge::{CHECK_CLASSES, Class, ClassCounts, class_counts_json};
-use raypencil_report::{DefectGroup, DefectLine, count, counted};
+use raypencil_report::{Block, DefectGroup, DefectLine, count, counted};
 use raypencil_scene::Precision;
 use serde_json::{Map, Value, json};
 
@@ -237,9 +237,13 @@ pub struct CheckFindings {
     pub why: Option<String>,
     /// Sentences on what was compared, and what was not.
     pub notes: Vec<String>,
+    /// How large a mistake would have been noticed, as a sentence; a pass alone says it.
+    pub sharpness: Option<String>,
+    /// All of those sizes, for a page.
+    pub sizes: Option<Block>,
     /// Names and values of what was asked.
     pub facts: Vec<(&'static str, String)>,
-    /// What only this form of a pack has, for programs: `scene`, `blind`, `verified`, `diagnosis`, `unknown_channels`.
+    /// What only this form of a pack has, for programs: `scene`, `blind`, `verified`, `diagnosis`, `sharpness`, `unknown_channels`.
     pub of_form: Map<String, Value>,
     /// Pictures as HTML; empty if there are none.
     pub pictures: String,

@@ -4,6 +4,7 @@
 //! findings   bundles, items and wrong rays, and the verdict on them
 //! document   the same as the document that `raypencil-report` prints
 //! given      what a candidate gives, what it does not, and in which type
+//! sharpness  how large a mistake would have been noticed
 //! sensors    a check of sensors in that form
 //! explorer   the part of its page that answers when asked
 //! folder     the files of a check
@@ -15,6 +16,7 @@ mod findings;
 mod folder;
 mod given;
 mod sensors;
+mod sharpness;
 
 pub use findings::{BundleFindings, CheckFindings, ItemFindings, PackForm, WorstOf, WrongRay};
 pub use folder::write_document;

@@ -19,6 +19,7 @@ use crate::check_report::findings::{
     BundleFindings, CheckFindings, ItemFindings, PackForm, WorstOf, WrongRay,
 };
 use crate::check_report::given::{coarse_storages, items_not_given, listed_totals, not_given};
+use crate::check_report::sharpness;
 use crate::published::PackIdentity;
 
 /// Pictures of every sensor: the exact ranges, the candidate's, and their difference.
@@ -85,6 +86,7 @@ fn findings(checked: &Checked) -> CheckFindings {
             "unexplained": found.unexplained.iter().map(ToString::to_string).collect::<Vec<_>>(),
         })
     });
+    let told = sharpness::told(checked);
     let of_form = [
         ("scene", json!({ "name": subject.name, "sha256": subject.sha256 })),
         ("blind", (*is_blind).into()),
@@ -95,6 +97,7 @@ fn findings(checked: &Checked) -> CheckFindings {
             }),
         ),
         ("diagnosis", diagnosis_json.into()),
+        ("sharpness", sharpness::to_json(&told)),
         ("unknown_channels", recorded.unknown.clone().into()),
     ];
     let mut worst: Vec<DefectLine> =
@@ -116,6 +119,8 @@ fn findings(checked: &Checked) -> CheckFindings {
         headline: None,
         why: checked.why(),
         notes: notes(checked),
+        sharpness: sharpness::sentence(&told, pack.is_published()),
+        sizes: sharpness::block(&told),
         facts: vec![("Scene SHA-256", subject.sha256.clone())],
         of_form: of_form.into_iter().map(|(key, value)| (key.to_string(), value)).collect(),
         pictures: String::new(),

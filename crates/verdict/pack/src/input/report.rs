@@ -83,6 +83,8 @@ fn findings(checked: &InputChecked) -> CheckFindings {
         headline: Some(headline(checked)),
         why: None,
         notes: reflectivity.into_iter().collect(),
+        sharpness: None,
+        sizes: None,
         facts: vec![("Faces given", checked.given.to_string())],
         of_form: [("triangles".to_string(), triangles)].into_iter().collect(),
         pictures: String::new(),

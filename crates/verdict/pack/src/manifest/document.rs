@@ -6,6 +6,8 @@ use raypencil_files::{Fault, FileError};
 use raypencil_scene::FluxModel;
 use serde::{Deserialize, Serialize};
 
+use crate::sharpness::Sharpness;
+
 /// Number of the format that this version writes and reads. It grows when a key changes its meaning or goes away.
 pub const MANIFEST_FORMAT: u32 = 1;
 
@@ -13,7 +15,7 @@ pub const MANIFEST_FORMAT: u32 = 1;
 pub(crate) const MANIFEST_NAME: &str = "manifest.json";
 
 /// Content of `manifest.json`.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Manifest {
     /// Number of the format: [`MANIFEST_FORMAT`].
@@ -41,6 +43,9 @@ pub struct Manifest {
     /// How many rays decide each clause of the contract; empty if they were not counted.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub clauses: Vec<ManifestClause>,
+    /// How large a tolerance of each clause is noticed; empty if it was not measured.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sharpness: Vec<ManifestSharpness>,
     /// Every file except the manifest.
     pub files: Vec<ManifestFile>,
 }
@@ -95,6 +100,34 @@ pub struct ManifestClause {
     pub clause: String,
     /// On how many rays a renderer that breaks the clause is wrong.
     pub rays: u64,
+}
+
+/// A way to keep a clause with a tolerance, and the smallest tolerance that the pack notices.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ManifestSharpness {
+    /// Key of the way, such as `shadow-starts-away`.
+    pub slack: String,
+    /// Unit of the sizes.
+    pub unit: String,
+    /// The smallest size that is noticed of a candidate that computes in double precision; `None`: none is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub f64: Option<f64>,
+    /// The same for single precision.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub f32: Option<f64>,
+}
+
+impl ManifestSharpness {
+    /// The entry of a slack.
+    pub(crate) fn new(double: &Sharpness, single: &Sharpness) -> Self {
+        Self {
+            slack: double.slack.key().into(),
+            unit: double.slack.unit().words().into(),
+            f64: double.noticed,
+            f32: single.noticed,
+        }
+    }
 }
 
 /// Purpose of a file.

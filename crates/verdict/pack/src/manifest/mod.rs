@@ -19,6 +19,6 @@ mod write;
 
 pub use document::{
     ChannelType, FileRole, FileType, MANIFEST_FORMAT, Manifest, ManifestChannel, ManifestClause,
-    ManifestFile, ManifestScene, ManifestSensor, PackKind,
+    ManifestFile, ManifestScene, ManifestSensor, ManifestSharpness, PackKind,
 };
 pub(crate) use document::{MANIFEST_NAME, pack_fault};

@@ -120,13 +120,13 @@ fn the_page_has_verdict_quantities_defects_and_pictures() {
     assert!(page.contains("<span aria-hidden=\"true\">✗</span> 3 of 6,912 rays are wrong"), "{page}");
     assert!(page.contains("mine says no hit; true is face"), "the worst defect is told");
     assert_eq!(page.matches("<li>").count(), 3);
-    // The camera has three pictures; the six beams, which are not given, the exact one.
-    assert_eq!(page.matches("src=\"data:image/png;base64,").count(), 9);
+    // The camera has three pictures; the nine beams, which are not given, the exact one.
+    assert_eq!(page.matches("src=\"data:image/png;base64,").count(), 12);
     assert!(
         page.contains("mine minus exact") && page.contains("Colours span ±2.00 m, the largest difference")
     );
     assert!(page.contains("hit on one side only"));
-    assert_eq!(page.matches("range: not given").count(), 6);
+    assert_eq!(page.matches("range: not given").count(), 9);
     let row = page.lines().find(|line| line.contains("<th scope=\"row\">depth</th>")).expect("a row");
     assert!(row.contains("not given") && !row.contains("<td>0</td>"), "{row}");
     for outside in ["http:", "https:", "<script", "<link", "url("] {

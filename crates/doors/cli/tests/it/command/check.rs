@@ -74,7 +74,7 @@ fn an_error_of_two_ulp_is_found_and_named() {
         range.set(40, 50, value.next_up().next_up());
     });
     let output = check(folder.path(), "pyramids", &["--arithmetic", "f64", "-o", "out"]);
-    assert_fails(&output, &["camera pixel 40,50, range", "--pixel 40,50", "1 of 10,178 rays is wrong"]);
+    assert_fails(&output, &["camera pixel 40,50, range", "--pixel 40,50", "1 of 10,482 rays is wrong"]);
     let probe = format!("raypencil probe {}", pack("pyramids").join("scene.toml").display());
     assert_fails(&output, &[&probe]);
 
@@ -86,7 +86,7 @@ fn an_error_of_two_ulp_is_found_and_named() {
     let junit = fs::read_to_string(folder.path().join("out/junit.xml")).unwrap();
     assert!(junit.contains("failures=\"1\"") && junit.contains("camera pixel 40,50"), "{junit}");
     let page = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
-    assert!(page.contains("1 of 10,178 rays is wrong") && page.contains("camera pixel 40,50"), "{page}");
+    assert!(page.contains("1 of 10,482 rays is wrong") && page.contains("camera pixel 40,50"), "{page}");
     // The printed command shows the ray.
     let repro = raypencil(
         folder.path(),
@@ -208,7 +208,7 @@ fn any_value_that_is_not_finite_means_no_hit() {
         }
     });
     assert!(changed > 6 * 100, "{changed} cells of the sky");
-    let exact = "✓ 10,178 rays agree with the exact answers";
+    let exact = "✓ 10,482 rays agree with the exact answers";
     let output = check(folder.path(), "pyramids", &[]);
     assert_passes(&output);
     assert!(text(&output.stdout).contains(exact), "{}", text(&output.stdout));
@@ -315,7 +315,7 @@ fn a_changed_pack_is_refused() {
     }
     fs::write(&manifest, json.to_string()).unwrap();
     // It still calls itself the published version.
-    assert_trouble(&check(), &["says that it is pyramids 1.0.0", "as it is published, or another version"]);
+    assert_trouble(&check(), &["says that it is pyramids 2.0.0", "as it is published, or another version"]);
     json["version"] = "1.0.1".into();
     fs::write(&manifest, json.to_string()).unwrap();
     assert_trouble(&check(), &["is not the referee's", "camera pixel"]);
@@ -345,7 +345,7 @@ fn a_blind_pack_has_no_answers_and_can_be_checked() {
     assert!(blind.join("camera/range.T.npy").exists() && blind.join("camera.exr").exists());
     // It does so only if it is told to.
     let replaced = raypencil(folder.path(), &["pack", "--blind", "7", "-o", "blind"]);
-    assert_trouble(&replaced, &["blind: it has results of a pack of pyramids, version 1.0.0", "--force"]);
+    assert_trouble(&replaced, &["blind: it has results of a pack of pyramids, version 2.0.0", "--force"]);
     assert!(blind.join("camera/range.T.npy").exists());
     assert_passes(&raypencil(folder.path(), &["pack", "--blind", "7", "-o", "blind", "--force"]));
     assert!(!blind.join("camera/range.T.npy").exists());

@@ -118,11 +118,11 @@ fn a_manifest_that_says_what_is_not_so_is_refused() {
     // It calls itself what is published.
     let is_hard = |of: &mut serde_json::Value| {
         of["scene"]["name"] = "hard".into();
-        of["version"] = "1.0.0".into();
+        of["version"] = "2.0.0".into();
     };
     refused(
         &is_hard,
-        &["says that it is hard 1.0.0, and has the digest", "as it is published, or another version"],
+        &["says that it is hard 2.0.0, and has the digest", "as it is published, or another version"],
     );
     // A map without one of its channels, and one that says something else than the arrays.
     let path = pack.join("camera.exr");

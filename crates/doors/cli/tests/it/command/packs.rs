@@ -31,7 +31,7 @@ fn a_pack_has_a_bench_and_says_which_clauses_its_rays_decide() {
         let manifest: serde_json::Value = serde_json::from_slice(&manifest).expect("JSON");
         manifest["sensors"].as_array().expect("sensors").len()
     };
-    assert_eq!(sensors("benched"), 5);
+    assert_eq!(sensors("benched"), 1 + 7);
 
     let plain = raypencil(folder.path(), &["pack", "down.toml", "--no-bench", "-o", "plain", "--json"]);
     let plain: serde_json::Value = serde_json::from_slice(&plain.stdout).expect("JSON");

@@ -7,7 +7,7 @@ use std::path::Path;
 use raypencil_files::write_npy;
 use raypencil_pack::{
     ChannelType, FileRole, FileType, Manifest, ManifestChannel, ManifestClause, ManifestFile, ManifestScene,
-    ManifestSensor, PackKind,
+    ManifestSensor, ManifestSharpness, PackKind,
 };
 use raypencil_scene::{FluxModel, Image};
 
@@ -40,6 +40,7 @@ fn manifest() -> Manifest {
         blind_seed: None,
         sensors: vec![sensor("camera", 3, 2), sensor("beam-0", 5, 1)],
         clauses: Vec::new(),
+        sharpness: Vec::new(),
         files: vec![
             bare("scene.toml", FileRole::Scene),
             ManifestFile {
@@ -56,6 +57,12 @@ fn manifest() -> Manifest {
 fn blind() -> Manifest {
     let mut blind = manifest();
     (blind.kind, blind.blind_seed) = (PackKind::Blind, Some(7));
+    blind.sharpness = vec![ManifestSharpness {
+        slack: "shift-right".into(),
+        unit: "of a cell".into(),
+        f64: Some(5e-9),
+        f32: Some(0.01),
+    }];
     (blind.version, blind.licence) = (Some("1.0.0".into()), Some("CC0-1.0".into()));
     blind.files.truncate(1);
     blind.clauses = vec![ManifestClause { clause: "fronts-only".into(), rays: 9 }];

@@ -1,0 +1,97 @@
+//! How sharp benches are, and that the measure tells blunt ones from sharp ones.
+
+use raypencil_naive::{Lax, Naive, Slack};
+use raypencil_scene::{Image, Precision, Renderer, Request, Scene, Silent};
+use raypencil_scene_io::{Overrides, Subject, load, load_text, scene_sha256};
+
+use super::*;
+use crate::bench::{Edition, with_bench_of};
+use crate::blind::blind_scene_of;
+use crate::{PackKind, PackLabel, check_pack, write_pack, write_questions};
+
+/// The scene of the pack `hard`, without a bench.
+fn hard() -> Scene {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../data/scenes/packs/hard.toml");
+    load(file, &Overrides::default()).expect("a scene").scene
+}
+
+fn measured(edition: Edition) -> Vec<Sharpness> {
+    let scene = with_bench_of(&hard(), edition).expect("room");
+    sharpness(&scene, Precision::F64, &Silent).expect("a scene")
+}
+
+#[test]
+fn the_first_bench_lets_large_tolerances_pass_and_the_second_none() {
+    let (first, second) = (measured(Edition::First), measured(Edition::Second));
+    let noticed = |all: &[Sharpness], slack: Slack| {
+        all.iter().find(|one| one.slack == slack).and_then(|one| one.noticed).unwrap_or(f64::INFINITY)
+    };
+    // A shadow bias, shadow rays that stop short, a face that is decided beside the pencil, and a farther face.
+    for (slack, least) in [
+        (Slack::ShadowStartsAway, 1e-2),
+        (Slack::ShadowStopsShort, 1e-1),
+        (Slack::ShiftDown, 1e-4),
+        (Slack::FartherFace, 1e-3),
+    ] {
+        assert!(noticed(&first, slack) >= least, "{slack:?}: {:e}", noticed(&first, slack));
+        assert!(noticed(&second, slack) <= 1e-4 * least, "{slack:?}: {:e}", noticed(&second, slack));
+    }
+    assert!(!first.iter().all(Sharpness::suffices));
+    assert_eq!(second.len(), Slack::ALL.len());
+    for one @ Sharpness { slack, noticed, .. } in second {
+        assert!(one.suffices(), "{one:?}");
+        // One of 1, 2 and 5 times a power of ten, and no larger than what is worth trying.
+        let size = noticed.expect("a size");
+        assert!(["1e", "2e", "5e"].iter().any(|digit| format!("{size:e}").starts_with(digit)), "{size:e}");
+        assert!(size <= slack.largest());
+    }
+}
+
+#[test]
+fn a_slack_without_size_is_the_honest_renderer() {
+    let scene = with_bench_of(&hard(), Edition::Second).expect("room");
+    let honest = Naive { fault: None }.render(&scene, &Request::EVERYTHING);
+    for slack in Slack::ALL {
+        let lax = Lax { slack: *slack, size: 0.0 }.render(&scene, &Request::EVERYTHING);
+        assert_eq!(format!("{:?}", lax.beams), format!("{:?}", honest.beams), "{slack:?}");
+        assert_eq!(format!("{:?}", lax.returns), format!("{:?}", honest.returns), "{slack:?}");
+    }
+}
+
+#[test]
+fn packs_of_the_first_edition_are_still_checked() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let of = |scene: Scene, name: &str| {
+        let loaded = load_text("version = 1\n", name).expect("a scene");
+        let arguments = loaded.name.clone();
+        Subject { sha256: scene_sha256(&scene), scene, ..loaded.into_subject(arguments) }
+    };
+    let pack = folder.path().join("hard");
+    let subject = of(with_bench_of(&hard(), Edition::First).expect("room"), "hard");
+    let label = PackLabel { version: Some("0.9.0".into()), licence: None };
+    let manifest = write_pack(&subject, None, &label, &pack, &Silent).expect("a pack");
+    assert!(manifest.sharpness.is_empty(), "only the second bench is measured");
+    let checked = check_pack(&pack, &pack, None, &Silent).expect("a check");
+    assert!(checked.passes());
+    // The answers are those of the pack `hard` with the version 1.0.0.
+    let of_beam = manifest.files.iter().find(|file| file.path == "beam-5.exr").expect("a map");
+    assert_eq!(of_beam.sha256, "a52c90ab8cf91a90e99c04c8dc52fca812b7b205431272546d74f4073abbcf83");
+
+    // A blind pack of the first edition: its scene is that of its seed.
+    let blind = folder.path().join("blind-7");
+    let subject = of(blind_scene_of(7, Edition::First).expect("a scene"), "blind-7");
+    let mut manifest = write_questions(&subject, &blind, &Silent).expect("a pack");
+    manifest.kind = PackKind::Blind;
+    // A candidate that meets nothing.
+    let candidate = folder.path().join("candidate");
+    std::fs::create_dir_all(candidate.join("camera")).expect("a folder");
+    let nothing = Image::filled(96, 72, f64::NAN);
+    raypencil_files::write_npy(candidate.join("camera/range.T.npy"), &[&nothing]).expect("an array");
+    for (seed, is_its_seed) in [(7, true), (8, false)] {
+        manifest.blind_seed = Some(seed);
+        manifest.write(&blind).expect("a manifest");
+        let checked = check_pack(&blind, &candidate, None, &Silent);
+        let error = checked.err().map_or(String::new(), |error| error.to_string());
+        assert_eq!(error.contains("its scene differs from that of seed"), !is_its_seed, "{error}");
+    }
+}
