@@ -20,8 +20,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
          A renderer may keep a clause of the contract with a tolerance: a bias of its shadow rays, edges a little too wide, a far plane \
          a little too far. Here are the smallest such tolerances that a pack notices, for each of {} ways. Each was found with a renderer \
          in double precision that has this one tolerance and is else honest: it answered the pencils of the pack's bench, and was \
-         checked as every candidate is. The size fell by steps of 1, 2 and 5 until no answer was wrong. All larger sizes that were tried \
-         were noticed.\n\n\
+         checked as every candidate is. The size was found by halving among 1, 2 and 5 times the powers of ten: it is noticed, and the next \
+         smaller one is not.\n\n\
          `*`: the next smaller size changed answers as well, each so little that rounding excuses it. Without it no ray of the \
          bench passes the limit closer.\n\n\
          Made by `just slack`. The figures of a pack also stand in its `manifest.json`, and a check that passes tells them \

@@ -32,8 +32,8 @@ const MAX_SHADOW_BIAS: f64 = 1e-9;
 pub struct Sharpness {
     /// The clause and how it is kept.
     pub slack: Slack,
-    /// The smallest size that was noticed, in the slack's unit. All larger ones that were tried were noticed, too. `None`: not even
-    /// the largest is.
+    /// The smallest size that was noticed, in the slack's unit, found by halving; the next smaller one was not. `None`: not even the
+    /// largest is.
     pub noticed: Option<f64>,
     /// Whether the next smaller size changed answers as well, each so little that rounding excuses it. Else no ray of the bench
     /// passes the limit closer.
@@ -133,25 +133,24 @@ pub fn sharpness(
         DECADES.flat_map(|decade| [1.0, 2.0, 5.0].map(|digit| size(digit, decade))).collect();
     let smallest = |slack: Slack| {
         progress.stage(&format!("sharpness: {}", slack.key()));
-        let mut noticed = None;
-        let mut excused = false;
-        // Down by decades, then by digits within the first decade that is not noticed.
-        let mut step = 3;
-        let mut at = sizes.iter().rposition(|size| *size <= slack.largest());
-        while let Some(place) = at {
-            match changes(slack, sizes[place]) {
-                Change::Wrong => {
-                    noticed = Some(place);
-                    at = place.checked_sub(step);
-                }
-                other => {
-                    excused = other == Change::Excused;
-                    let back = noticed.and_then(|noticed| noticed.checked_sub(1)).filter(|_| step > 1);
-                    step = 1;
-                    at = back;
-                }
+        let Some(largest) = sizes.iter().rposition(|size| *size <= slack.largest()) else {
+            return Sharpness { slack, noticed: None, excused: false };
+        };
+        // By halving: `noticed` is noticed, and `passes` is not.
+        let (mut noticed, mut passes, mut of_passing) = (None, None, Change::Nothing);
+        let mut at = largest;
+        loop {
+            match changes(slack, sizes[at]) {
+                Change::Wrong => noticed = Some(at),
+                other => (passes, of_passing) = (Some(at), other),
+            }
+            let first = passes.map_or(0, |passes| passes + 1);
+            match noticed {
+                Some(noticed) if first < noticed => at = (first + noticed) / 2,
+                _ => break,
             }
         }
+        let excused = of_passing == Change::Excused;
         Sharpness { slack, noticed: noticed.map(|place| sizes[place]), excused }
     };
     Ok(Slack::ALL.iter().copied().map(smallest).collect())

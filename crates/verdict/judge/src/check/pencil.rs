@@ -3,6 +3,8 @@
 //! What the recording leaves out (the face, the visibility, the pixel) is taken from the truth; if the values do not
 //! fit that, from another admissible answer that they fit.
 
+use glam::DVec3;
+
 use crate::answer::StatedReturn;
 use crate::bounds::{HitBounds, ReturnBounds, ReturnValues, min_normal};
 use crate::check::ground_truth::GroundTruth;
@@ -15,7 +17,7 @@ use crate::quantity::{Item, Quantity};
 use crate::recorded::Recorded;
 use crate::scene_answers::BeamLight;
 use raypencil_referee::{Format, RoundedReturn};
-use raypencil_scene::{Hit, Pixel, Place, SensorId};
+use raypencil_scene::{Camera, Hit, Mounted, Pixel, Place, Pose, SensorId};
 
 /// The exact light of a pencil in the pixel where it is stated to land.
 #[derive(Debug, Clone, Copy)]
@@ -168,7 +170,10 @@ pub(super) fn judge_return(
     let pencil = RecordedPencil { truth, recorded, place, beam, stated };
     let of_hit = (hit, of_hit, assumed.class);
 
-    let pixel = stated.pixel.unwrap_or(true_visibility.1);
+    // Who states no pixel and sees a hit that truly lands beside the image lands on the nearest pixel: rounding may excuse that.
+    let nearest =
+        || nearest_pixel(truth.scene().camera(), hit.point).filter(|_| stated.visible == Some(true));
+    let pixel = stated.pixel.unwrap_or_else(|| true_visibility.1.or_else(nearest));
     let mut visible = stated.visible.unwrap_or_else(|| pencil.infers_visible(pixel));
     let contradicts = visible && pixel.is_none();
     if contradicts {
@@ -200,6 +205,21 @@ pub(super) fn judge_return(
         delivered,
         missing_from: true_pixel.filter(|pixel| lands != Some(*pixel)).map(|pixel| (pixel, class)),
     }
+}
+
+/// The pixel of the image that is nearest to where a point lands; `None` for a point that is not before the camera.
+fn nearest_pixel(camera: &Mounted<Camera>, point: DVec3) -> Option<Pixel> {
+    let Mounted { scene_from_sensor: pose, sensor } = camera;
+    let seen = Pose { position: DVec3::ZERO, ..pose.inverse() }.rotate(point - pose.position);
+    if !(seen.z > sensor.focal_length) {
+        return None;
+    }
+    let [i, j] = [0, 1].map(|axis: usize| {
+        let at = sensor.focal_length * seen[axis] / seen.z / sensor.pixel_pitch[axis]
+            + sensor.principal_point[axis];
+        at.floor().clamp(0.0, f64::from([sensor.width, sensor.height][axis] - 1)) as u32
+    });
+    Some(Pixel { i, j })
 }
 
 /// Another hypothesis that is admissible and that all values fit, if what is not stated leaves one.

@@ -525,9 +525,17 @@ impl<'a> Tube<'a> {
         let way = point - camera;
         // Away from the point the tubes are narrower.
         let radius = self.radius() * u.min(1.0);
-        // Its back to the beam, which does not meet it.
-        let plate = self.around(camera + way * u, radius, camera);
-        let plate = showing(Side::Back, plate, self.origin);
+        let centre = camera + way * u;
+        let plate = if u > 0.5 {
+            // Along the pencil, which so does not meet it: a face right before or behind the point would be one of two faces whose
+            // order single precision cannot tell.
+            let along = self.q.normalize();
+            let other = along.cross(way).normalize();
+            let at = |x: f64, y: f64| centre + radius * (x * along + y * other);
+            [at(-1.0, -0.7), at(1.05, -0.6), at(-0.1, 1.1)]
+        } else {
+            showing(Side::Back, self.around(centre, radius, camera), self.origin)
+        };
         // From the near one of both limits, so that small differences are formed of small numbers.
         let (limit, sign) = match u {
             _ if u > 1.0 => (1.0, 1.0),

@@ -281,3 +281,44 @@ fn a_pack_of_questions_is_checked_by_its_scene() {
     let found = check_pack(&questions, &folder.path().join("wrong"), None, &Silent).expect("a candidate");
     assert_eq!(found.check.of(Class::Defect), 1);
 }
+
+#[test]
+fn a_pass_tells_only_what_the_candidate_could_have_shown() {
+    let told = |checked: &Checked| -> Vec<String> {
+        let json: Value = serde_json::from_str(&checked.document().json()).unwrap();
+        let sizes = json["sharpness"].as_array().expect("sizes");
+        sizes.iter().map(|one| format!("{} {}", one["slack"].as_str().unwrap(), one["noticed"])).collect()
+    };
+    let has = |told: &[String], slack: &str| told.iter().any(|one| one.starts_with(slack));
+    let all = told(&perfect());
+    assert_eq!(all.len(), 37);
+    // The bluntest first.
+    assert!(!all[0].ends_with("e-16") && all[36].ends_with("e-16"), "{all:?}");
+
+    let without = |quantity: Quantity| {
+        let mut checked = perfect();
+        checked.recorded.storage.retain(|(_, item), _| item.quantity != quantity);
+        checked
+    };
+    let blind = told(&without(Quantity::Visible));
+    assert!(!has(&blind, "shadow-starts-away") && !has(&blind, "image-wider"), "{blind:?}");
+    assert!(has(&blind, "shift-right") && has(&blind, "lands-left"), "{blind:?}");
+    let faceless = told(&without(Quantity::Face));
+    assert!(!has(&faceless, "shift-right") && has(&faceless, "range-scaled"), "{faceless:?}");
+    // Stored in single precision, values of a candidate in double precision say less than it computes.
+    let mut coarse = perfect();
+    for ((_, item), storage) in &mut coarse.recorded.storage {
+        if item.quantity == Quantity::Range {
+            *storage = raypencil_files::Storage::F32;
+        }
+    }
+    assert!(!has(&told(&coarse), "range-scaled") && has(&told(&coarse), "depth-scaled"));
+    // In single precision the sizes are those of single precision.
+    let mut single = perfect();
+    single.recorded.precision = Precision::F32;
+    assert_ne!(told(&single), all);
+    let text = perfect().document().screen();
+    assert!(text.contains("a shadow bias of") && !text.contains("the pack's own word"), "{text}");
+    let text = without(Quantity::Visible).document().screen();
+    assert!(text.contains("of a cell off") && !text.contains("a shadow bias of"), "{text}");
+}

@@ -1,5 +1,6 @@
 //! How sharp benches are, and that the measure tells blunt ones from sharp ones.
 
+use raypencil_judge::{Class, GroundTruth, Quantity, Recorded, check};
 use raypencil_naive::{Lax, Naive, Slack};
 use raypencil_scene::{Image, Precision, Renderer, Request, Scene, Silent};
 use raypencil_scene_io::{Overrides, Subject, load, load_text, scene_sha256};
@@ -45,6 +46,46 @@ fn the_first_bench_lets_large_tolerances_pass_and_the_second_none() {
         assert!(["1e", "2e", "5e"].iter().any(|digit| format!("{size:e}").starts_with(digit)), "{size:e}");
         assert!(size <= slack.largest());
     }
+}
+
+#[test]
+fn the_smallest_size_fails_a_check_and_the_next_smaller_one_passes() {
+    let scene = with_bench_of(&hard(), Edition::Second).expect("room");
+    let truth = GroundTruth::certified(&scene, &Silent);
+    let defects = |slack: Slack, size: f64| {
+        let lax = Lax { slack, size }.render(&scene, &Request::EVERYTHING);
+        let recorded = Recorded::of_output("lax", &scene, &lax, Precision::F64);
+        check(&truth, &recorded, &Silent).of(Class::Defect)
+    };
+    let found = measured(Edition::Second);
+    // One of each kind: rays, a limit along the ray, shadows, landing.
+    for slack in [Slack::ShiftUp, Slack::PlaneEarlier, Slack::ShadowStartsAway, Slack::LandsLeft] {
+        let noticed =
+            found.iter().find(|one| one.slack == slack).and_then(|one| one.noticed).expect("a size");
+        assert_ne!(defects(slack, noticed), 0, "{slack:?} {noticed:e}");
+        // Of 1, 2 and 5 times a power of ten, the next smaller is at least 0.4 times as large.
+        assert_eq!(defects(slack, 0.4 * noticed), 0, "{slack:?} {noticed:e}");
+    }
+}
+
+#[test]
+fn who_states_no_pixel_may_see_what_lands_beside_the_image_by_rounding_alone() {
+    let scene = with_bench_of(&hard(), Edition::Second).expect("room");
+    let truth = GroundTruth::certified(&scene, &Silent);
+    let defects = |size: f64| {
+        let lax = Lax { slack: Slack::ImageWider, size }.render(&scene, &Request::EVERYTHING);
+        let mut recorded = Recorded::of_output("lax", &scene, &lax, Precision::F32);
+        recorded
+            .storage
+            .retain(|(_, item), _| item.quantity == Quantity::Visible || item.quantity == Quantity::Face);
+        for light in &mut recorded.answers.light {
+            (light.returns.pixel, light.returns.flux, light.image) = (None, None, None);
+        }
+        check(&truth, &recorded, &Silent).of(Class::Defect)
+    };
+    // Points lie 2e-9, 1e-8, 1e-7, 1e-5, 3e-3 and 1e-2 of a pixel beside the image.
+    assert_eq!(defects(1e-6), 0);
+    assert_ne!(defects(0.02), 0);
 }
 
 #[test]

@@ -123,10 +123,10 @@ fn a_layered_file_is_judged_by_what_is_declared_and_remembered() {
         &check(folder.path(), "hard", &[]),
         &["there is no such map; expected one of range.T, depth.Z, P.X"],
     );
-    note(json!({ "beam-7/depth.Z": "ViewLayer.Depth.Z" }));
+    note(json!({ "beam-77/depth.Z": "ViewLayer.Depth.Z" }));
     assert_trouble(
         &check(folder.path(), "hard", &[]),
-        &["the scene has no sensor beam-7; expected camera, beam-0"],
+        &["the scene has no sensor beam-77; expected camera, beam-0"],
     );
 }
 
@@ -263,14 +263,14 @@ fn every_format_of_render_is_read_again() {
     }
     let same = |a: &str, b: &str, more: &[&str]| {
         let shown = screen(folder.path(), &[&["diff", a, b], more].concat(), 0);
-        assert!(shown.contains("✓ 118 channels compared, the same in every cell"), "{a}, {b}: {shown}");
+        assert!(shown.contains("✓ 172 channels compared, the same in every cell"), "{a}, {b}: {shown}");
     };
     same("npy", "npz", &[]);
     same("npy", "zarr", &[]);
     same("npz", "zarr/maps.zarr", &[]);
     same("exr", "exr-each", &[]);
     let shown = screen(folder.path(), &["diff", "zarr", "exr-each", "--fail-ulp", "0.5"], 0);
-    assert!(shown.contains("✓ 118 channels compared"), "{shown}");
+    assert!(shown.contains("✓ 172 channels compared"), "{shown}");
     let candidates = ["validate", &scene, "--candidate", "npz", "--candidate", "zarr", "-o", "out"];
     assert!(screen(folder.path(), &candidates, 0).contains("2 candidates agree"));
 }
