@@ -66,6 +66,7 @@
 //! face_margin           the margin of the nearest faces
 //! sheet, surface_margin where the range is continuous, and the margin of that
 //! rounded_face          how wrong an honest program may be about one face
+//! rounded_line          how wrong it may be about a line of sight
 //! ruling                whether an answer is right, or admissible
 //! line_of_sight         the line from the camera to a point, as polynomials
 //! visibility            what the camera sees of a pencil's hit
@@ -117,6 +118,7 @@ mod ray;
 mod region;
 mod render;
 mod rounded_face;
+mod rounded_line;
 mod rounding;
 mod ruling;
 mod shares;
@@ -151,7 +153,7 @@ pub use flux::Flux;
 pub use margin::{Margin, Margins};
 pub use paper_visibility::{ExplainedVisibility, VisibilityApproximations, VisibilityReason};
 pub use render::ExactRenderer;
-pub use rounded_face::RANGE_ROUNDINGS;
+pub use rounded_face::{RANGE_ROUNDINGS, edge_slip};
 pub use rounding::{Format, Rounded};
 pub use ruling::{Ruling, Tolerance};
 pub use values::RoundedHit;

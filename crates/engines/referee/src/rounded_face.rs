@@ -11,6 +11,11 @@
 //!
 //! Of an edge-on face the second is more than (10 kappa + 27) / (5 kappa + 15) S, which is larger than R.
 //!
+//! Multiplied by c, the second says how far the point that the program finds is off the face's plane, along the normal: e =
+//! (10 kappa + 27) u S, however the face is seen. A program that forms this point first, and then its side of each edge, sees it
+//! beside its place as well. The point is off by e / c along the ray, of which e sin(psi) / c lies in the plane; seen along the
+//! ray, which the plane meets under the cosine c, that is e sin(psi). By so much the program's edges [seem displaced](edge_slip).
+//!
 //! The judge's bounds derive both, step by step; a range that is stated may be off by 36 kappa u S / c, which is more, as kappa is
 //! at least 1.15.
 //! A face in the way gets the smaller bound: of a slender one the other would excuse too much.
@@ -76,6 +81,12 @@ impl RoundedFace {
     }
 }
 
+/// How far an edge may seem displaced, metres across a line that meets the face's plane at an angle with this sine, to a program
+/// with this unit roundoff that forms the point on the plane first. `size` is S.
+pub fn edge_slip(aspect: f64, sine: f64, size: f64, unit_roundoff: f64) -> f64 {
+    (2.0 * NORMAL_ROUNDINGS * aspect + QUOTIENT_ROUNDINGS) * unit_roundoff * size * sine
+}
+
 /// The cosine up to which a face of this aspect is edge-on for a program with this unit roundoff.
 pub(crate) fn least_cosine(kappa: f64, unit_roundoff: f64) -> f64 {
     (NORMAL_ROUNDINGS * kappa + APPROACH_ROUNDINGS) * unit_roundoff
@@ -99,3 +110,7 @@ fn height_and_approach(face: &Face, ray: &ExactRay<'_>) -> Option<(f64, f64)> {
 pub(crate) fn plane_error(face: &Face, size: f64, unit_roundoff: f64) -> f64 {
     (NORMAL_ROUNDINGS * aspect(face.corners()) + HEIGHT_ROUNDINGS) * unit_roundoff * size
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/rounded_face.rs"]
+mod tests;

@@ -27,11 +27,15 @@
 use glam::DVec3;
 
 use crate::answer::{StatedHit, StatedReturn};
-use raypencil_referee::{RANGE_ROUNDINGS, aspect};
+use raypencil_referee::{RANGE_ROUNDINGS, aspect, edge_slip};
 use raypencil_scene::{
     Beam, FaceId, Filter, FluxModel, Hit, HitQuantity, HitValue, Mesh, Place, Precision, Profile, Ray,
     Return, Scene,
 };
+
+/// Roundings of a direction: a vertex is subtracted from the origin and turned into the sensor's frame (15 u S,
+/// see above), and an edge's crossing formed from it (6 u S). As an angle, divided by the range.
+pub(crate) const DIRECTION_ROUNDINGS: f64 = 21.0;
 
 /// Roundings of a point along a known range: rotation (12 u R), origin (4 u |o|), sum (u |P|), |P| <= S.
 const POINT_ROUNDINGS: f64 = 18.0;
@@ -171,6 +175,15 @@ pub(crate) struct MetFace {
 }
 
 impl MetFace {
+    /// How far beside this face a ray may be said to meet it, or within it to miss it, metres: every program's roundings of a
+    /// direction, and the slip of one that forms the point on the plane first.
+    pub(crate) fn lateral(&self, range: f64, precision: Precision) -> f64 {
+        let u = precision.unit_roundoff;
+        let scale = range + self.longest_edge + self.origin;
+        let sine = (1.0 - self.cosine * self.cosine).max(0.0).sqrt();
+        DIRECTION_ROUNDINGS * u * scale + edge_slip(self.aspect, sine, scale, u)
+    }
+
     /// The bounds for a hit at `range` metres.
     #[inline]
     pub(crate) fn bounds(&self, range: f64, precision: Precision) -> HitBounds {

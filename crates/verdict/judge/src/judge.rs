@@ -1,11 +1,11 @@
 //! The judge: which rays the referee is asked about, and with what tolerance.
 
-use crate::bounds::HitBounds;
+use crate::bounds::{DIRECTION_ROUNDINGS, FaceShape, HitBounds};
 use raypencil_referee::{
     Approximations, Displacement, Explained, ExplainedVisibility, Format, Referee, RefereeTree,
     RoundedReturn, Ruling, Tolerance, VisibilityApproximations, VisibilityRuling,
 };
-use raypencil_scene::{FaceId, Hit, Pixel, Place, Precision, Return, Sampling, Scene, SensorId};
+use raypencil_scene::{FaceId, Hit, Pixel, Place, Precision, Ray, Return, Sampling, Scene, SensorId};
 
 /// Rays of agreeing answers that are judged as well; rays of differing answers are always judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -19,10 +19,6 @@ pub enum JudgeShare {
 
 /// Number of rays of which one is sampled: 64, so that chance does not leave less than 1 % of them.
 const SAMPLE_ONE_IN_RAYS: u64 = 64;
-
-/// Roundings of a direction: a vertex is subtracted from the origin and turned into the sensor's frame (15 u S,
-/// see `bounds`), and an edge's crossing formed from it (6 u S). As an angle, divided by the range.
-const DIRECTION_ROUNDINGS: f64 = 21.0;
 
 /// The smallest lateral tolerance that any renderer is held to, in cells.
 const MIN_LATERAL_TOLERANCE_CELLS: f64 = 1e-9;
@@ -92,7 +88,14 @@ impl<'s> Judge<'s> {
         range: Option<f64>,
         precision: Precision,
     ) -> Ruling {
-        let tolerance = || self.tolerance(place, answer, range, precision);
+        let tolerance = || {
+            let tolerance = self.tolerance(place, answer, range, precision);
+            // The nearest face may be lost beside its edge as the named one may be found there.
+            let exact = self.referee.verdict(place.sensor, place.i, place.j);
+            let faces = exact.into_iter().flat_map(|exact| exact.faces).chain(answer);
+            let slips = faces.filter_map(|face| self.lateral_of(place, face, precision));
+            Tolerance { lateral: slips.fold(tolerance.lateral, f64::max).min(1.0), ..tolerance }
+        };
         // A face that the mesh does not have is as wrong as can be.
         self.referee.rule_within(place.sensor, place.i, place.j, answer, tolerance).unwrap_or(Ruling::Wrong)
     }
@@ -177,8 +180,8 @@ impl<'s> Judge<'s> {
         self.referee.explain_visibility(beam, place.i, place.j, face, visible, with, tolerance)
     }
 
-    /// Tolerances delta and epsilon of a renderer at this ray. delta = max(1e-9 cell, 21 u S / R as an angle, or 21 u S
-    /// as a length along the focal axis, in cells); epsilon is the bound of the range.
+    /// Tolerances delta and epsilon of a renderer at this ray, but for [the slip of edges](Self::lateral_of). delta = max(1e-9
+    /// cell, 21 u S / R as an angle, or 21 u S as a length along the focal axis, in cells); epsilon is the bound of the range.
     fn tolerance(
         &self,
         Place { sensor, i, j }: Place,
@@ -207,10 +210,41 @@ impl<'s> Judge<'s> {
         let depth = known.map_or(0.0, |face| HitBounds::of(mesh, face, &ray, range, precision).range);
         let edge = known.map_or(0.0, |face| longest_edge(scene, face));
         let error = DIRECTION_ROUNDINGS * precision.unit_roundoff * (range + edge + ray.origin.length());
+        let lateral = self.cells(sensor, &ray, error, range);
+        Tolerance {
+            lateral: lateral.clamp(MIN_LATERAL_TOLERANCE_CELLS, 1.0),
+            depth,
+            position: error,
+            unit_roundoff: precision.unit_roundoff,
+        }
+    }
+
+    /// How far a face's edges may seem displaced to a program that forms the point on its plane first, cells; `None` if there is
+    /// no such face, or the ray is parallel to it.
+    fn lateral_of(
+        &self,
+        place @ Place { sensor, i, j }: Place,
+        face: FaceId,
+        precision: Precision,
+    ) -> Option<f64> {
+        let ray = self.scene.ray(sensor, i, j)?;
+        let is_known = (face.0 as usize) < self.scene.mesh().faces().len();
+        let exact = is_known.then(|| self.referee.plane_hit(sensor, i, j, face))??.in_format(Format::Double);
+        let range = exact.range.abs();
+        if !range.is_finite() {
+            return None;
+        }
+        let slip = FaceShape::of(self.scene.mesh(), face).met_by(&ray).lateral(range, precision);
+        Some(self.cells(place.sensor, &ray, slip, range))
+    }
+
+    /// A displacement across a ray, metres at this range, in cells of the sensor: the most that it may be.
+    fn cells(&self, sensor: SensorId, ray: &Ray, error: f64, range: f64) -> f64 {
+        let scene = self.scene;
         let q = ray.direction.length();
         // The smallest angle between neighbouring cells' rays here: across the ray, a cell is at least its
         // size times the cosine of the obliquity.
-        let lateral = match sensor {
+        match sensor {
             SensorId::Camera => {
                 let camera = &scene.camera().sensor;
                 let cell = camera.pixel_pitch[0].min(camera.pixel_pitch[1]) * camera.focal_length / (q * q);
@@ -223,12 +257,6 @@ impl<'s> Judge<'s> {
                 let row = beam.thickness / f64::from(beam.rows);
                 (error / range / cell).max(error / row)
             }
-        };
-        Tolerance {
-            lateral: lateral.clamp(MIN_LATERAL_TOLERANCE_CELLS, 1.0),
-            depth,
-            position: error,
-            unit_roundoff: precision.unit_roundoff,
         }
     }
 

@@ -27,7 +27,7 @@ const DIGESTS: &[[&str; 2]] = &[
     ["rays", "1eacad71f16e54a8f1ed9273a36735ce4a59e3afe420047ae41e479d93242f51"],
     ["rulings", "1deb3cb78dd01c07b452cb90c94459b9a6ec51dc72066e0ec834108dfb25c91a"],
     ["sight margins", "a4ede55252cff7fd2ceec06d4db818987cdb34ab13047b0141caebf08006aab5"],
-    ["sight rulings", "cf9b85602fb04c01a646e9a7a19ffb9b73203f2479c04a9b2fe22724bbb540c7"],
+    ["sight rulings", "a9668315ab97e49df7e250b5462e5eabafd62cecf3621cca963a4daefdcefc3f"],
     ["sights", "564e6b2bed35c8f0a5f1ae883c9f3baf0cbd24eccc4ee7e3797ac0ff5b16261a"],
     ["surface margins", "bcebae7af1a4ec48e02b38d40300a15392984249709da94ad24924e0cdd55f35"],
     ["values", "4624ad4bbbc45d1f1446c4ce4b7ec38c9e3603552cdc89d98c2f689e0e205231"],
