@@ -90,9 +90,12 @@ impl<'s> Judge<'s> {
     ) -> Ruling {
         let tolerance = || {
             let tolerance = self.tolerance(place, answer, range, precision);
-            // The nearest face may be lost beside its edge as the named one may be found there.
-            let exact = self.referee.verdict(place.sensor, place.i, place.j);
-            let faces = exact.into_iter().flat_map(|exact| exact.faces).chain(answer);
+            // The named face may be found beside its edge, and a nearest face before it be lost there.
+            let range_of = |face: FaceId| self.plane_hit(place, face).map_or(f64::INFINITY, |hit| hit.range);
+            let named = answer.map_or(f64::INFINITY, range_of);
+            let nearest = self.referee.verdict(place.sensor, place.i, place.j);
+            let lost = nearest.into_iter().flat_map(|nearest| nearest.faces);
+            let faces = lost.filter(|face| range_of(*face) < named).chain(answer);
             let slips = faces.filter_map(|face| self.lateral_of(place, face, precision));
             Tolerance { lateral: slips.fold(tolerance.lateral, f64::max).min(1.0), ..tolerance }
         };

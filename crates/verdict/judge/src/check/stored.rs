@@ -45,3 +45,32 @@ impl Recorded {
         values.into_iter().map(stored).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::quantity::Quantity;
+
+    #[test]
+    fn a_value_of_at_most_half_the_smallest_number_cannot_be_stored() {
+        let smallest = [
+            (Storage::F16, libm::scalbn(1.0, -24)),
+            (Storage::F32, libm::scalbn(1.0, -149)),
+            (Storage::F64, f64::from_bits(1)),
+        ];
+        for (storage, smallest) in smallest {
+            let is_unrepresentable = |exact: f64| {
+                let value = StatedValue::scalar(Quantity::PencilFlux, Some(0.0), exact, 0.0);
+                stored_difference(&value.unwrap(), storage).is_unrepresentable
+            };
+            // Half of it lies between 0 and the number, and rounds to 0, which is even. More rounds up.
+            assert!(!is_unrepresentable(smallest) && !is_unrepresentable(0.0), "{storage:?}");
+            if storage != Storage::F64 {
+                let half = 0.5 * smallest;
+                let found = [half.next_down(), half, half.next_up()].map(is_unrepresentable);
+                assert_eq!(found, [true, true, false], "{storage:?}");
+                assert_eq!([-half, -half.next_up()].map(is_unrepresentable), [true, false], "{storage:?}");
+            }
+        }
+    }
+}

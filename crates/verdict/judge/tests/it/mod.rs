@@ -2,4 +2,5 @@
 
 mod conventions;
 mod honest;
+mod lateral;
 mod walls;

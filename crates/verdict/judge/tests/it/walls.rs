@@ -7,6 +7,7 @@ use glam::DVec3;
 use raypencil_judge::{
     ApproximationTally, Attributions, Class, GroundTruth, Item, Judge, JudgeShare, Quantity, Recorded,
     SensorResult, Side, check, class_of_ray, compare, compare_judged, item_of_channel, listed_defects,
+    range_bound,
 };
 use raypencil_referee::ExactRenderer;
 use raypencil_scene::{
@@ -53,6 +54,10 @@ fn exact(scene: &Scene) -> RenderOutput {
 fn compared(scene: &Scene, a: &RenderOutput, b: &RenderOutput, share: JudgeShare) -> Vec<SensorResult> {
     let side = |name, output| Side { name, output, precision: Precision::F64, attributions: None };
     compare_judged(&Judge::new(scene, share), side("one", a), side("other", b))
+}
+
+fn compared_sides(scene: &Scene, a: Side<'_>, b: Side<'_>) -> Vec<SensorResult> {
+    compare_judged(&Judge::new(scene, JudgeShare::Sample), a, b)
 }
 
 fn map(output: &mut RenderOutput) -> &mut SensorMap {
@@ -723,4 +728,31 @@ fn names_of_quantities() {
         "pixel flux",
     ];
     assert_eq!(names, expected);
+}
+
+/// Two renderers of different arithmetic may differ by the bound of each, whichever is named first: neither is held to the other's.
+#[test]
+fn each_side_is_held_to_its_own_arithmetic() {
+    let scene = walls(FluxModel::Radiometric);
+    let output = exact(&scene);
+    let camera = output.camera.as_ref().unwrap();
+    let places = (0..9).flat_map(|j| (0..9).map(move |i| Place { sensor: SensorId::Camera, i, j }));
+    for precisions in [[Precision::F64, Precision::F32], [Precision::F32, Precision::F64]] {
+        for (share, defects) in [(0.9, 0), (1.1, 81)] {
+            // The side in single precision is off.
+            let mut off = output.clone();
+            let ranges = off.camera.as_mut().unwrap().range.as_mut().unwrap();
+            for place in places.clone() {
+                let hit = camera.hit(place.i, place.j).unwrap();
+                let bound = range_bound(&scene, place, hit.face, hit.range, precisions).unwrap();
+                ranges.set(place.i, place.j, Maybe::some(hit.range + share * bound));
+            }
+            let side = |name, output, precision| Side { name, output, precision, attributions: None };
+            let outputs = if precisions[0] == Precision::F32 { [&off, &output] } else { [&output, &off] };
+            let (a, b) = (side("one", outputs[0], precisions[0]), side("other", outputs[1], precisions[1]));
+            let found = &compared_sides(&scene, a, b)[0];
+            let range = found.items.get(Quantity::Range.into()).unwrap();
+            assert_eq!(range.of(Class::Defect), defects, "{precisions:?} {share}");
+        }
+    }
 }
