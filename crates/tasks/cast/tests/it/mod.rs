@@ -1,5 +1,7 @@
 //! The tests of this crate by its public items, one program together with its unit tests.
 
+mod bounds;
+mod cloud;
 mod lidar;
 mod packs;
 mod reported;

@@ -233,3 +233,25 @@ fn a_changed_pack_and_arrays_of_another_shape_are_refused() {
         assert!(refused(&folders).contains(expected), "{}", refused(&folders));
     }
 }
+
+/// A pack that asks for fronts has answers of fronts, in the comparison and in what is drawn of it: rays from inside the cube meet
+/// backs alone.
+#[test]
+fn a_pack_of_fronts_is_shown_with_answers_of_fronts() {
+    let checked = |sides: Sides| {
+        let folders = Folders::new(sides, sides, |_| {});
+        let conventions = CandidateConventions::default();
+        check_ray_pack(folders.pack.path(), folders.candidate.path(), Precision::F64, conventions, &Silent)
+            .unwrap()
+    };
+    let [both, fronts] = [Sides::Both, Sides::Fronts].map(checked);
+    assert!(both.passes() && fronts.passes());
+    assert_eq!([both.fronts_only, fronts.fronts_only], [false, true]);
+    for (checked, sides) in [(&both, Sides::Both), (&fronts, Sides::Fronts)] {
+        assert_eq!(checked.answers, cast(&cube(), &rays().rays, sides, Questions::default(), &Silent));
+        // What is shown of a candidate that passes is what it says.
+        let stated = checked.stated.face.as_ref().expect("faces");
+        assert_eq!(checked.answers.hits().count(), stated.iter().flatten().count());
+    }
+    assert!(fronts.answers.hits().count() < both.answers.hits().count());
+}
