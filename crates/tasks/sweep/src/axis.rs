@@ -64,6 +64,9 @@ impl Axis {
             let room = MAX_VALUES - rows.len();
             match range(part, room).map_err(|message| SweepError::axis(text, message))? {
                 Some(values) => rows.extend(values.into_iter().map(|value| vec![value])),
+                None if room == 0 => {
+                    return Err(SweepError::axis(text, format!("expected at most {MAX_VALUES} values")));
+                }
                 None => rows.push(vec![part.to_string()]),
             }
         }
@@ -202,6 +205,20 @@ mod tests {
         assert!(message.ends_with("7 is given twice; expected different values"));
         // Each against each would take minutes.
         assert!(start.elapsed().as_secs() < 10);
+    }
+
+    #[test]
+    fn a_parameter_has_as_many_values_as_there_is_room_for() {
+        // Up to the limit, and one more: of a whole range, and of what is left.
+        for room in [1, 2, 10] {
+            let of = |count: usize| range(&format!("1:{count}:1"), room);
+            assert_eq!(of(room).unwrap().unwrap().len(), room);
+            assert!(of(room + 1).unwrap_err().contains(&format!("has {} values", room + 1)));
+            assert!(range("1:2:1", 0).is_err());
+        }
+        // A value that is no range, where there is room for none.
+        let message = Axis::parse(&format!("a=1:{MAX_VALUES}:1,x")).unwrap_err().to_string();
+        assert!(message.contains("expected at most 1000000 values"), "{message}");
     }
 
     #[test]

@@ -228,3 +228,50 @@ fn source_digest(scene: &str) -> Result<String, SweepError> {
         },
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whatever_decides_the_results_of_a_run_is_in_its_identity() {
+        let axis = |text: &str| Axis::parse(text).unwrap();
+        let plan = || Sweep {
+            scene: "pyramids".into(),
+            scene_sha256: "0".repeat(64),
+            axes: vec![axis("a=1,2"), axis("b=3")],
+            task: Task::Drive,
+            renderers: vec!["scanline".into(), "tracer".into()],
+            as_printed: false,
+            build: "1".into(),
+        };
+        let own = plan().identity(0);
+        let others = [
+            Sweep { scene_sha256: "1".repeat(64), ..plan() },
+            Sweep { axes: vec![axis("a=2,1"), axis("b=3")], ..plan() },
+            Sweep { axes: vec![axis("a=1"), axis("c=3")], ..plan() },
+            Sweep { axes: vec![axis("a=1"), axis("b=3"), axis("c=4")], ..plan() },
+            Sweep { task: Task::Render, ..plan() },
+            Sweep { renderers: vec!["scanline".into()], ..plan() },
+            Sweep { renderers: vec!["tracer".into(), "scanline".into()], ..plan() },
+            Sweep { as_printed: true, ..plan() },
+            Sweep { build: "2".into(), ..plan() },
+        ];
+        let mut identities: Vec<String> = others.iter().map(|other| other.identity(0)).collect();
+        identities.extend([own.clone(), plan().identity(1)]);
+        // The second of the swapped values is the first of the plan: one pair is the same, and no other.
+        assert_eq!(others[1].identity(1), own);
+        assert_eq!(others[1].identity(0), plan().identity(1));
+        identities.sort_unstable();
+        identities.dedup();
+        assert_eq!(identities.len(), others.len() + 1);
+        // The other values, their order and the scene's name change nothing.
+        for same in [
+            Sweep { axes: vec![axis("a=1,5,7"), axis("b=3,4")], ..plan() },
+            Sweep { axes: vec![axis("b=3"), axis("a=1,2")], ..plan() },
+            Sweep { scene: "other".into(), ..plan() },
+        ] {
+            assert_eq!(same.identity(0), own);
+        }
+    }
+}
