@@ -1,4 +1,5 @@
 //! The tests of this crate, one program.
 
+mod facing;
 mod warnings;
 mod whereabouts;
