@@ -427,3 +427,63 @@ fn the_dyadic_scene_has_both_sensors() {
     let sensors: Vec<SensorId> = dyadic_scene().sensors().collect();
     assert_eq!(sensors, [SensorId::Camera, SensorId::Beam(0)]);
 }
+
+/// A ridge that the ray touches: it meets the front of one face and the back of the other at one t, and crosses the surface not at all.
+/// Whoever asks for fronts alone gets the same number.
+#[test]
+fn a_touched_ridge_is_no_crossing_whichever_sides_are_asked_for() {
+    let wedge = |x: f64| {
+        let corners = vec![[0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [x, 0.0, 0.25], [x, 0.0, -0.25]];
+        let faces = if x > 0.0 { vec![[0, 2, 1], [0, 1, 3]] } else { vec![[0, 1, 2], [0, 3, 1]] };
+        Triangles::new(corners, faces).unwrap()
+    };
+    for x in [1.0, -1.0] {
+        let mesh = wedge(x);
+        let cast = ExactCast::new(&mesh);
+        for (start, along) in [([0, 0, 3], [0, 0, -1]), ([0, 0, -3], [0, 0, 1])] {
+            let touching = ray(start, along);
+            let [both, fronts] = [Sides::Both, Sides::Fronts].map(|sides| cast.all(&touching, sides));
+            assert_eq!((both.len(), both[0].faces.len(), both[0].crossing), (1, 2, 0));
+            assert_eq!((fronts.len(), fronts[0].faces.len(), fronts[0].crossing), (1, 1, 0));
+        }
+    }
+}
+
+/// Rays from the exact middle of a room to its vertices: all their coordinates are as small as those of the ray's start, so that no
+/// other slack widens a box. Each ray meets exactly the faces that have the vertex, at t = 1.
+#[test]
+fn rays_from_the_middle_of_a_room_meet_all_faces_of_a_corner() {
+    const N: u32 = 12;
+    let mut vertices: Vec<[f64; 3]> = Vec::new();
+    let mut faces: Vec<[u32; 3]> = Vec::new();
+    let mut index = |vertex: [f64; 3]| {
+        let found = vertices.iter().position(|other| *other == vertex);
+        found.unwrap_or_else(|| {
+            vertices.push(vertex);
+            vertices.len() - 1
+        }) as u32
+    };
+    let scale = [1.0 / 3.0, 1.3 / 3.0, 0.7 / 3.0];
+    for (axis, side) in (0..3).flat_map(|axis| [(axis, -1.0), (axis, 1.0)]) {
+        let at = |i: u32, j: u32| {
+            let part = |k: u32| (f64::from(k) - f64::from(N / 2)) / f64::from(N / 2);
+            let mut vertex = [0.0; 3];
+            (vertex[axis], vertex[(axis + 1) % 3], vertex[(axis + 2) % 3]) = (side, part(i), part(j));
+            [0, 1, 2].map(|k| vertex[k] * scale[k])
+        };
+        for (i, j) in (0..N).flat_map(|i| (0..N).map(move |j| (i, j))) {
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)].map(&mut index);
+            faces.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    assert_eq!(vertices.len(), 6 * 12 * 12 + 2);
+    let mesh = Triangles::new(vertices.clone(), faces.clone()).unwrap();
+    let cast = ExactCast::new(&mesh);
+    for (index, vertex) in vertices.iter().enumerate() {
+        let ray = CastRay::new(DVec3::ZERO, DVec3::from_array(*vertex));
+        let of_vertex = (0..faces.len()).filter(|&face| faces[face].contains(&(index as u32)));
+        let expected: Vec<FaceId> = of_vertex.map(|face| FaceId(face as u32)).collect();
+        assert_eq!(cast.first(&ray, Sides::Both), expected, "{vertex:?}");
+        assert_eq!(cast.first_values(&ray, Sides::Both).unwrap().t.double, 1.0);
+    }
+}

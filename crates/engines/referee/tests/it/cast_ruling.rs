@@ -228,3 +228,60 @@ fn the_back_of_a_face_that_is_edge_on_may_be_hit() {
     assert_eq!(rule(0.99 * least), Ruling::Wrong);
     assert!(is_rounding(rule(1.01 * least)));
 }
+
+/// Every error of the rule, charged on both sides of what it may seem: at 0.9 of it an answer is excused, at 1.1 it is wrong.
+#[test]
+fn each_error_is_excused_up_to_its_size_and_not_beyond() {
+    // The plate's corners are at most 1, and rays start 3 above it: S = 4. Legs of 1: kappa = sqrt 2. Head on: c = 1.
+    for precision in [Precision::F64, Precision::F32] {
+        let u = precision.unit_roundoff;
+        let (across, along) = (16.0 * u * 4.0, 72.0 * 2.0_f64.sqrt() * u * 4.0);
+        let plate = squares(&[0.0]);
+        let exact = ExactCast::new(&plate);
+        let of = |mesh: &Triangles, ray: &CastRay, stated: Option<u32>| {
+            let stated = stated.map_or(Reading::Miss, |face| Reading::Hit(FaceId(face)));
+            ExactCast::new(mesh).rule(ray, Sides::Both, stated, precision)
+        };
+        assert_eq!(exact.lateral_error(&down(0.5, 0.5), precision), across);
+        for (share, expected) in [(0.9, true), (1.1, false)] {
+            let excused = |ruling: Ruling| {
+                assert!(!matches!(ruling, Ruling::Exact | Ruling::Tie), "{ruling:?}");
+                is_rounding(ruling) == expected
+            };
+            // Beside each of the plate's sides, outside and inside. Face 0 is below its diagonal.
+            let by = share * across;
+            let beside: [(fn(f64) -> CastRay, u32); 4] = [
+                (|by| down(0.5, -by), 0),
+                (|by| down(1.0 + by, 0.5), 0),
+                (|by| down(0.5, 1.0 + by), 1),
+                (|by| down(-by, 0.5), 1),
+            ];
+            for (at, face) in beside {
+                assert!(excused(of(&plate, &at(by), Some(face))), "{face} {share} {u}");
+                assert!(excused(of(&plate, &at(-by), None)), "{face} {share} {u}");
+            }
+            // Both ends of the ray, for the hit and for the miss.
+            let by = share * along;
+            let (up_to, from) = (
+                |t_max: f64| CastRay { t_max, ..down(0.75, 0.25) },
+                |t_min: f64| CastRay { t_min, ..down(0.75, 0.25) },
+            );
+            assert!(excused(of(&plate, &up_to(3.0 - by), Some(0))));
+            assert!(excused(of(&plate, &up_to(3.0 + by), None)));
+            assert!(excused(of(&plate, &from(3.0 + by), Some(0))));
+            assert!(excused(of(&plate, &from(3.0 - by), None)));
+            // A face behind the nearest: the errors of both.
+            let two = squares(&[0.0, -2.0 * by]);
+            assert!(excused(of(&two, &down(0.75, 0.25), Some(2))), "{share} {u}");
+            // The nearest of the two has an error of its own: seen at 60 degrees, twice as much.
+            let slanting = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.5, 0.75_f64.sqrt()]];
+            let flat = |z: f64| [[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]];
+            let middle = 0.25 * 3.0_f64.sqrt();
+            let gap = share * (along + 2.0 * along);
+            let corners = [slanting, flat(middle - gap)].concat();
+            let two = Triangles::new(corners, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+            let ray = down(0.25, 0.25);
+            assert!(excused(of(&two, &ray, Some(1))), "{share} {u}");
+        }
+    }
+}
