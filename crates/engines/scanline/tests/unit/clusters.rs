@@ -60,6 +60,31 @@ fn every_face_is_in_one_cluster() {
     assert_eq!(check(&apart), (0..10_000_usize).step_by(64 * MAX_FACES).map(of_piece).sum());
 }
 
+/// The places of a cluster's vertices are bytes: the 256th is the last. A cluster of 84 faces that share nothing has 252 vertices; then
+/// come faces that bring none to three new ones.
+#[test]
+fn the_256th_vertex_is_in_a_cluster_and_the_257th_in_the_next() {
+    let corner = |k: u32| [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]][k as usize];
+    for news in (0..64_u32).map(|k| [k % 4, k / 4 % 4, k / 16]) {
+        let mut vertices: Vec<[f32; 3]> = Vec::new();
+        let mut faces: Vec<[u32; 3]> = Vec::new();
+        let mut add = |new: u32| {
+            // The other corners are those of the first face.
+            faces.push([0, 1, 2].map(|k| {
+                if k >= new {
+                    return k;
+                }
+                vertices.push(corner(k));
+                vertices.len() as u32 - 1
+            }));
+        };
+        (0..84).for_each(|_| add(3));
+        news.into_iter().for_each(&mut add);
+        (0..5).for_each(|_| add(3));
+        assert_eq!(check(&ground_of(vertices, faces)), 2, "{news:?}");
+    }
+}
+
 #[test]
 fn a_million_faces_in_one_place_and_nested_ones_are_clustered_quickly() {
     let one = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
