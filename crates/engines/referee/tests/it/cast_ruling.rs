@@ -229,6 +229,9 @@ fn the_back_of_a_face_that_is_edge_on_may_be_hit() {
     assert!(is_rounding(rule(1.01 * least)));
 }
 
+/// A ray that far outside of one of the plate's sides, and the face that has the side.
+type Beside = (fn(f64) -> CastRay, u32);
+
 /// Every error of the rule, charged on both sides of what it may seem: at 0.9 of it an answer is excused, at 1.1 it is wrong.
 #[test]
 fn each_error_is_excused_up_to_its_size_and_not_beyond() {
@@ -250,7 +253,7 @@ fn each_error_is_excused_up_to_its_size_and_not_beyond() {
             };
             // Beside each of the plate's sides, outside and inside. Face 0 is below its diagonal.
             let by = share * across;
-            let beside: [(fn(f64) -> CastRay, u32); 4] = [
+            let beside: [Beside; 4] = [
                 (|by| down(0.5, -by), 0),
                 (|by| down(1.0 + by, 0.5), 0),
                 (|by| down(0.5, 1.0 + by), 1),
