@@ -63,6 +63,12 @@ if [[ -n $python ]]; then
         expect 0 "$raypencil" cast "$mesh" "$rays" --any --all --margins -o "$folder"
         expect 0 "$python" reference/exact_cast.py "$mesh" "$rays" "$folder"
     done
+    # Margins once more, in fractions; one that is a millionth of itself off is found.
+    margins=$work/cast/margins
+    expect 0 "$raypencil" cast data/rays/cube.obj data/rays/cube.npy --margins -o "$margins"
+    expect 0 "$python" reference/exact_margins.py data/rays/cube.obj data/rays/cube.npy "$margins" --rays 20
+    "$python" -c 'import sys, numpy; numpy.save(sys.argv[1], numpy.load(sys.argv[1]) * (1 + 1e-6))' "$margins/margin.surface.npy"
+    expect 1 "$python" reference/exact_margins.py data/rays/cube.obj data/rays/cube.npy "$margins" --rays 20
     other_bit "$folder/t.npy"
     expect 1 "$python" reference/exact_cast.py "$mesh" "$rays" "$folder" --displaced 0
     expect 0 "$python" reference/load_ground.py data/packs/input "$work/input"

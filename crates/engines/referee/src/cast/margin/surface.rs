@@ -130,11 +130,11 @@ impl ExactCast<'_> {
                         let far = Place::end();
                         let (border, segment) = (Border::Edge(k), Rc::new(point));
                         let piece = Piece { face, side, border, segment, near, far };
-                        return self.jump(frame, &piece, cap);
+                        return self.jump(frame, &piece, sides, cap);
                     }
                 }
                 Some(Task::Piece(mut piece)) => match self.next_uncovered(frame, &piece, sides, &query) {
-                    None => return self.jump(frame, &piece, cap),
+                    None => return self.jump(frame, &piece, sides, cap),
                     Some(near) => {
                         piece.near = near;
                         if !piece.is_empty() {
@@ -325,7 +325,7 @@ impl ExactCast<'_> {
         }
     }
 
-    fn jump(&self, frame: &Frame<'_>, piece: &Piece, cap: f64) -> Margin {
+    fn jump(&self, frame: &Frame<'_>, piece: &Piece, sides: Sides, cap: f64) -> Margin {
         let segment = &piece.segment;
         let bounds = in_units(segment.size(&piece.near), frame);
         let scale = frame.fast.scale.middle();
@@ -336,8 +336,19 @@ impl ExactCast<'_> {
         let step = (bounds[1].max(self.smallest_size(frame)) * PLACE_SLACK).min(length);
         let along = if length > 0.0 { [(to_a - a) / length, (to_b - b) / length] } else { [0.0; 2] };
         let right = segment.right();
-        let witness = [0, 1].map(|k: usize| [a, b][k] + along[k] * step + right[k] * step / 16.0);
-        within(bounds, Some(witness), 2.0 * self.smallest_size(frame), cap)
+        let beside = |along_by: f64, right_by: f64| {
+            [0, 1].map(|k: usize| [a, b][k] + (along[k] * along_by + right[k] * right_by) * step)
+        };
+        // It counts only if the border is there for rays of f64 numbers, too: the face is met to its left, and not to its right.
+        let is_met = |by: [f64; 2]| self.first_moved(frame.ray, sides, by).contains(&piece.face);
+        let beyond = |&(along_by, right_by): &(f64, f64)| {
+            is_met(beside(along_by, -right_by)) && !is_met(beside(along_by, right_by))
+        };
+        let tried =
+            [(1.0, 1.0 / 16.0), (1.0, 1.0), (1.0 / 16.0, 1.0 / 256.0), (16.0, 1.0), (0.5, 1.0 / 65536.0)];
+        let witness =
+            tried.iter().find(|by| beyond(by)).map(|&(along_by, right_by)| beside(along_by, right_by));
+        within(bounds, witness, 2.0 * self.smallest_size(frame), cap)
     }
 }
 
