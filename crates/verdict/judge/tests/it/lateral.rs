@@ -13,20 +13,16 @@ use raypencil_scene::{
 
 const PIXEL: Place = Place { sensor: SensorId::Camera, i: 4, j: 4 };
 
-/// A needle of 4 m along x in the plane z = 0, 1/16 m wide in y, and a wall 1 m under it.
-const CORNERS: [[f32; 3]; 6] = [
-    [-2.0, 0.0, 0.0],
-    [2.0, 0.0, 0.0],
-    [1.0, 0.0625, 0.0],
-    [-2.0, -3.0, -1.0],
-    [3.0, -3.0, -1.0],
-    [0.5, 4.0, -1.0],
-];
+/// A face of 4 m along x in the plane z = 0, this wide in y, and a wall 1 m under it.
+fn corners(width: f32) -> [[f32; 3]; 6] {
+    let wall = [[-2.0, -3.0, -1.0], [3.0, -3.0, -1.0], [0.5, 4.0, -1.0]];
+    [[-2.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.0, width, 0.0], wall[0], wall[1], wall[2]]
+}
 
-/// The needle's edge along x under a pixel that looks at it from 3 m away, square to the edge, with this sine between ray and
-/// normal. The ray passes the edge `inside` metres within the needle, across the ray, or outside if that is negative. Cells are as wide
+/// The face's edge along x under a pixel that looks at it from 3 m away, square to the edge, with this sine between ray and
+/// normal. The ray passes the edge `inside` metres within the face, across the ray, or outside if that is negative. Cells are as wide
 /// as `cell`, as an angle.
-fn scene(sine: f64, inside: f64, cell: f64) -> Scene {
+fn scene(width: f32, sine: f64, inside: f64, cell: f64) -> Scene {
     let cosine = (1.0 - sine * sine).sqrt();
     let (forward, across) = (DVec3::new(0.0, sine, -cosine), DVec3::new(0.0, cosine, sine));
     let position = DVec3::new(0.5, 0.0, 0.0) + across * inside - 3.0 * forward;
@@ -35,7 +31,7 @@ fn scene(sine: f64, inside: f64, cell: f64) -> Scene {
     let sensor = Camera { max_range: 100.0, ..rig::camera(9, 9, cell * 1e-2, 1e-2) };
     let stone = Material { name: "stone".into(), reflectivity: 0.25 };
     let faces = vec![[0, 1, 2], [3, 4, 5]];
-    let mesh = Mesh::new(DVec3::ZERO, CORNERS.to_vec(), faces, vec![0; 2], vec![stone]).unwrap();
+    let mesh = Mesh::new(DVec3::ZERO, corners(width).to_vec(), faces, vec![0; 2], vec![stone]).unwrap();
     let camera = Mounted { scene_from_sensor: pose, sensor };
     Scene::new(Arc::new(mesh), camera, vec![], Atmosphere { attenuation: 0.0 }, FluxModel::Radiometric)
         .unwrap()
@@ -43,11 +39,15 @@ fn scene(sine: f64, inside: f64, cell: f64) -> Scene {
 
 #[test]
 fn a_ray_may_pass_an_edge_by_the_roundings_of_a_direction_and_of_the_planes_point() {
-    let shapes = [0, 3].map(|first| {
-        let [a, b, c] = [0, 1, 2].map(|k| DVec3::from_array(CORNERS[first + k].map(f64::from)));
-        (aspect([a, b, c]), a.distance(b).max(b.distance(c)).max(c.distance(a)))
-    });
-    for (precision, cell) in [(Precision::F64, 2e-6), (Precision::F32, 1e-2)] {
+    // A needle, for which the plane's point counts most, and a wide face, for which the direction does.
+    let widths: [f32; 2] = [0.0625, 2.0];
+    let arithmetics = [(Precision::F64, 2e-6), (Precision::F32, 1e-2)];
+    for (width, (precision, cell)) in widths.into_iter().flat_map(|width| arithmetics.map(|one| (width, one)))
+    {
+        let shapes = [0, 3].map(|first| {
+            let [a, b, c] = [0, 1, 2].map(|k| DVec3::from_array(corners(width)[first + k].map(f64::from)));
+            (aspect([a, b, c]), a.distance(b).max(b.distance(c)).max(c.distance(a)))
+        });
         for sine in [0.0_f64, 0.3, 0.8] {
             // |o| is some millimetres more or less than the distance from the scene's origin, which is 1/2 m beside.
             let angle = |(kappa, longest): (f64, f64), range: f64| {
@@ -60,7 +60,7 @@ fn a_ray_may_pass_an_edge_by_the_roundings_of_a_direction_and_of_the_planes_poin
                 for (side, stated) in [(-1.0, 0), (1.0, 1)] {
                     // Where the wall is named, the needle is lost: the larger of the two.
                     let most = 3.0 * if stated == 0 { of_needle } else { of_needle.max(of_wall) };
-                    let scene = scene(sine, side * share * most, cell);
+                    let scene = scene(width, sine, side * share * most, cell);
                     let judge = Judge::new(&scene, JudgeShare::All);
                     let exact = judge.referee().verdict(PIXEL.sensor, 4, 4).unwrap().faces;
                     assert_eq!(exact, [FaceId(1 - stated)]);
