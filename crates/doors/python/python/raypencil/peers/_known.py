@@ -1,0 +1,98 @@
+"""All peers, in the order of the page."""
+
+from __future__ import annotations
+
+from . import _ours
+from ._peer import Peer, unknown
+from .adapters import (
+    cgal,
+    embree,
+    fcpw,
+    libigl,
+    meshlib,
+    mitsuba,
+    mujoco,
+    ncollpyde,
+    node,
+    open3d,
+    panda3d,
+    pcu,
+    pybullet,
+    raylib,
+    raysect,
+    trimesh,
+    usd,
+    vtk,
+    warp,
+)
+
+_CLASSES: tuple[type[Peer], ...] = (
+    embree.Embree,
+    embree.EmbreeRobust,
+    open3d.Open3D,
+    mitsuba.MitsubaScalar,
+    mitsuba.MitsubaLlvm,
+    pcu.PointCloudUtils,
+    libigl.LibiglEmbree,
+    trimesh.TrimeshEmbree,
+    trimesh.Trimesh,
+    libigl.LibiglTree,
+    libigl.LibiglBruteForce,
+    vtk.VtkObbTree,
+    vtk.VtkCellLocator,
+    vtk.VtkStaticCellLocator,
+    vtk.VtkBspTree,
+    vtk.VtkCellTree,
+    warp.Warp,
+    fcpw.Fcpw,
+    meshlib.MeshLib,
+    meshlib.MeshLibDouble,
+    cgal.Cgal,
+    ncollpyde.Ncollpyde,
+    node.Rapier,
+    mujoco.MuJoCo,
+    pybullet.PyBullet,
+    node.Jolt,
+    node.CannonEs,
+    node.Three,
+    node.ThreeMeshBvh,
+    panda3d.Panda3D,
+    raylib.Raylib,
+    raysect.Raysect,
+    usd.Usd,
+    _ours.Tracer,
+    _ours.Referee,
+)
+
+#: What was looked for and is not asked, and why.
+LEFT_OUT = {
+    "Blender (bpy, mathutils)": "bpy wants NumPy 1, and the other packages want NumPy 2; mathutils does not build",
+    "bvh, nanort, tinybvh": "they are libraries of Rust and C++ without a package that Python or Node can call",
+    "COMPAS CGAL": "its package intersects meshes with meshes, not with rays",
+    "embree (PyPI)": "it has no package for this Python",
+    "Mitsuba and Warp on a graphics card": "they need one",
+    "Mitsuba in double precision": "its packages do not have it",
+    "parry": "it is asked as ncollpyde and as Rapier",
+    "pyembree": "it wants NumPy 1, and the other packages want NumPy 2",
+    "PyMeshLab": "it has no call for rays",
+    "pyoctree": "its package does not build",
+    "PyVista": "`ray_trace` is VTK's OBB tree, and `multi_ray_trace` trimesh with Embree: both are asked",
+    "ray-triangle-intersection (npm)": "it lets rays pass through backs",
+}
+
+
+def every_peer() -> list[Peer]:
+    """All peers, whether installed or not; raypencil's own are the last."""
+    return [one() for one in _CLASSES]
+
+
+def peer(name: str) -> Peer:
+    """A peer by its name.
+
+    Raises:
+        RaypencilError: there is none of this name; the message lists them.
+    """
+    known = {one.name: one for one in _CLASSES}
+    if name not in known:
+        raise unknown(name, list(known))
+    return known[name]()

@@ -1,0 +1,50 @@
+"""Mitsuba 3, in its variants. Its packages have single precision."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..._mesh import Mesh
+from .._peer import Built, Hits, Peer, Rays, hits, need, single
+
+
+class MitsubaScalar(Peer):
+    """`scene.ray_intersect_preliminary`, one ray at a time."""
+
+    name, title, package = "mitsuba-scalar", "Mitsuba, scalar_rgb", "mitsuba"
+    arithmetic = mesh_type = rays_type = "f32"
+    variant = "scalar_rgb"
+
+    def build(self, mesh: Mesh) -> Built:
+        mi = need("mitsuba", self.package)
+        mi.set_variant(self.variant)
+        made = mi.Mesh("mesh", len(mesh.vertices), len(mesh.faces))
+        parameters = mi.traverse(made)
+        parameters["vertex_positions"] = np.ravel(single(mesh.vertices))
+        parameters["faces"] = np.ravel(mesh.faces.astype(np.uint32))
+        parameters.update()
+        return mi, mi.load_dict({"type": "scene", "mesh": made})
+
+    def shoot(self, built: Built, rays: Rays) -> Hits:
+        mi, scene = built
+        face, t = np.full(len(rays), -1), np.full(len(rays), np.inf)
+        for k, row in enumerate(single(rays)):
+            ray = mi.Ray3f(o=row[:3].tolist(), d=row[3:6].tolist(), maxt=float(row[7]), time=0.0, wavelengths=[])
+            found = scene.ray_intersect_preliminary(ray)
+            if found.is_valid():
+                face[k], t[k] = found.prim_index, found.t
+        return hits(face, t, rays)
+
+
+class MitsubaLlvm(MitsubaScalar):
+    """The same, on arrays of rays."""
+
+    name, title, variant = "mitsuba-llvm", "Mitsuba, llvm_ad_rgb", "llvm_ad_rgb"
+
+    def shoot(self, built: Built, rays: Rays) -> Hits:
+        mi, scene = built
+        parts = [single(rays[:, k]) for k in (0, 1, 2, 3, 4, 5, 7)]
+        many = mi.Ray3f(o=mi.Point3f(*parts[:3]), d=mi.Vector3f(*parts[3:6]))
+        many.maxt = mi.Float(parts[6])
+        found = scene.ray_intersect_preliminary(many, coherent=False)
+        return hits(np.array(found.prim_index), np.array(found.t), rays, is_hit=np.array(found.is_valid()))

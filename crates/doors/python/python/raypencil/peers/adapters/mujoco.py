@@ -1,0 +1,39 @@
+"""MuJoCo."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..._mesh import Mesh
+from .._peer import Built, Hits, Peer, Rays, hits, need
+
+
+class MuJoCo(Peer):
+    """`mj_rayMesh`. It keeps vertices in single precision, turned into the mesh's axes of inertia, and computes in double."""
+
+    name, title, package = "mujoco", "MuJoCo", "mujoco"
+    arithmetic = mesh_type = "f32"
+    rays_type = "f64"
+    conventions = (
+        "It tells no face; t alone is judged.",
+        "It refuses meshes whose vertices lie in a plane, for it makes a hull of them.",
+    )
+
+    def build(self, mesh: Mesh) -> Built:
+        mujoco = need("mujoco", self.package)
+        spec = mujoco.MjSpec()
+        made = spec.add_mesh(name="mesh")
+        made.uservert = mesh.vertices.ravel().tolist()
+        made.userface = mesh.faces.ravel().tolist()
+        # Of an open mesh: the volume's inertia would be that of nothing.
+        made.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
+        spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="mesh", name="geom")
+        model = spec.compile()
+        data = mujoco.MjData(model)
+        mujoco.mj_forward(model, data)
+        return mujoco, model, data
+
+    def shoot(self, built: Built, rays: Rays) -> Hits:
+        mujoco, model, data = built
+        t = np.array([mujoco.mj_rayMesh(model, data, 0, ray[0:3], ray[3:6], None) for ray in rays])
+        return hits(None, t, rays, is_hit=t >= 0)

@@ -1,0 +1,72 @@
+"""trimesh: its own test, and its rays by Embree."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..._judge import Arithmetic
+from ..._mesh import Mesh
+from .._peer import Built, Hits, Peer, Rays, Unavailable, hits, need
+
+
+class Trimesh(Peer):
+    """`ray_triangle.RayMeshIntersector`: candidates by an R-tree, planes and barycentric weights in NumPy."""
+
+    name, title, package = "trimesh", "trimesh", "trimesh"
+    arithmetic: ClassVar[Arithmetic] = "f64"
+    mesh_type: ClassVar[Arithmetic] = "f64"
+    rays_type = "f64"
+    module = "trimesh.ray.ray_triangle"
+
+    def build(self, mesh: Mesh) -> Built:
+        made = need("trimesh", self.package).Trimesh(mesh.vertices, mesh.faces, process=False, validate=False)
+        return need(self.module, self.package).RayMeshIntersector(made)
+
+    def all_of(self, built: Built, rays: Rays) -> list[list[tuple[int, float]]]:
+        """All hits of each ray, in order of t."""
+        faces, index, points = built.intersects_id(rays[:, 0:3], rays[:, 3:6], return_locations=True, multiple_hits=True)
+        found: defaultdict[int, list[tuple[float, int]]] = defaultdict(list)
+        for face, ray, point in zip(faces, index, points, strict=True):
+            # A point tells t best along the direction's largest part.
+            axis = int(np.argmax(np.abs(rays[ray, 3:6])))
+            t = float((point[axis] - rays[ray, axis]) / rays[ray, 3 + axis])
+            if 0 <= t <= rays[ray, 7]:
+                found[int(ray)].append((t, int(face)))
+        return [[(face, t) for t, face in sorted(found[ray])] for ray in range(len(rays))]
+
+    def shoot(self, built: Built, rays: Rays) -> Hits:
+        firsts = [(one[0] if one else (-1, np.inf)) for one in self.all_of(built, rays)]
+        return hits([face for face, _ in firsts], [t for _, t in firsts], rays)
+
+    def any(self, mesh: Mesh, rays: Rays) -> NDArray[np.bool_] | None:
+        return np.asarray(self.build(mesh).intersects_any(rays[:, 0:3], rays[:, 3:6]), dtype=bool)
+
+    def all(self, mesh: Mesh, rays: Rays) -> list[list[tuple[int, float]]] | None:
+        return self.all_of(self.build(mesh), rays)
+
+
+class TrimeshEmbree(Trimesh):
+    """`ray_pyembree.RayMeshIntersector`, which trimesh takes where embreex is installed."""
+
+    name, title = "trimesh-embree", "trimesh with Embree"
+    arithmetic = "f32"
+    mesh_type = "f32"
+    module = "trimesh.ray.ray_pyembree"
+
+    def build(self, mesh: Mesh) -> Built:
+        if not need(self.module, "trimesh embreex").__dict__.get("rtcore_scene"):
+            raise Unavailable("trimesh has no Embree: pip install embreex")
+        return super().build(mesh)
+
+    def shoot(self, built: Built, rays: Rays) -> Hits:
+        # One hit of each ray is what it asks Embree; the points come from trimesh.
+        face, index, points = built.intersects_id(rays[:, 0:3], rays[:, 3:6], return_locations=True, multiple_hits=False)
+        faces, ts = np.full(len(rays), -1), np.full(len(rays), np.inf)
+        for one, ray, point in zip(face, index, points, strict=True):
+            axis = int(np.argmax(np.abs(rays[ray, 3:6])))
+            faces[ray], ts[ray] = one, (point[axis] - rays[ray, axis]) / rays[ray, 3 + axis]
+        return hits(faces, ts, rays)

@@ -1,0 +1,74 @@
+"""VTK's locators, which PyVista calls too. They take segments, and a tolerance, which is 0 here."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..._mesh import Mesh
+from .._peer import Built, Hits, Peer, Rays, hits, need, segment_length
+
+
+class VtkObbTree(Peer):
+    """`vtkOBBTree`; `pyvista.PolyData.ray_trace` asks it."""
+
+    name, title, package = "vtk-obb", "VTK, OBB tree", "vtk"
+    arithmetic = mesh_type = rays_type = "f64"
+    is_segment = True
+    meets_in_plane = True
+    conventions = ("It takes a tolerance, which is 0 here.",)
+    kind = "vtkOBBTree"
+
+    def build(self, mesh: Mesh) -> Built:
+        vtk = need("vtkmodules.all", self.package)
+        support = need("vtkmodules.util.numpy_support", self.package)
+        points, cells, data = vtk.vtkPoints(), vtk.vtkCellArray(), vtk.vtkPolyData()
+        points.SetData(support.numpy_to_vtk(np.array(mesh.vertices), deep=True))
+        counts = np.arange(0, 3 * len(mesh.faces) + 1, 3, dtype=np.int64)
+        flat = mesh.faces.astype(np.int64).ravel()
+        kind = vtk.VTK_ID_TYPE
+        cells.SetData(
+            support.numpy_to_vtk(counts, deep=True, array_type=kind), support.numpy_to_vtk(flat, deep=True, array_type=kind)
+        )
+        data.SetPoints(points)
+        data.SetPolys(cells)
+        locator = getattr(vtk, self.kind)()
+        locator.SetDataSet(data)
+        locator.BuildLocator()
+        return vtk, locator, data, np.array(mesh.vertices)
+
+    def shoot(self, built: Built, rays: Rays) -> Hits:
+        vtk, locator, _, vertices = built
+        length = segment_length(vertices, rays)
+        ends = rays[:, 0:3] + length[:, None] * rays[:, 3:6]
+        face, t = np.full(len(rays), -1), np.full(len(rays), np.inf)
+        at, point, weights, part, cell = vtk.reference(0.0), [0.0] * 3, [0.0] * 3, vtk.reference(0), vtk.reference(-1)
+        any_cell = vtk.vtkGenericCell()
+        for k in range(len(rays)):
+            start, end = rays[k, 0:3].tolist(), ends[k].tolist()
+            if locator.IntersectWithLine(start, end, 0.0, at, point, weights, part, cell, any_cell):
+                face[k], t[k] = cell.get(), at.get() * length[k]
+        return hits(face, t, rays)
+
+
+class VtkCellLocator(VtkObbTree):
+    """`vtkCellLocator`."""
+
+    name, title, kind = "vtk-cells", "VTK, cell locator", "vtkCellLocator"
+
+
+class VtkStaticCellLocator(VtkObbTree):
+    """`vtkStaticCellLocator`."""
+
+    name, title, kind = "vtk-static", "VTK, static cell locator", "vtkStaticCellLocator"
+
+
+class VtkBspTree(VtkObbTree):
+    """`vtkModifiedBSPTree`."""
+
+    name, title, kind = "vtk-bsp", "VTK, BSP tree", "vtkModifiedBSPTree"
+
+
+class VtkCellTree(VtkObbTree):
+    """`vtkCellTreeLocator`."""
+
+    name, title, kind = "vtk-cell-tree", "VTK, cell tree", "vtkCellTreeLocator"

@@ -1,0 +1,149 @@
+"""Adapters of other programs: each mixes nothing up; what does is red. Those that are not installed are skipped."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import raypencil
+from raypencil import RaypencilError, peers
+from raypencil.peers import Hits, Peer, Unavailable
+from raypencil.peers._closed_forms import mixed_up
+from raypencil.peers._ours import Referee, Tracer
+from raypencil.peers._peer import Rays
+
+NAMES = [one.name for one in peers.every_peer()]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_adapter_mixes_nothing_up(name: str) -> None:
+    one = peers.peer(name)
+    try:
+        one.version()
+        wrong = mixed_up(one)
+    except Unavailable as missing:
+        pytest.skip(f"{one.title}: {missing}")
+    assert wrong == []
+
+
+def test_each_has_names_of_its_own_and_says_what_it_reads() -> None:
+    assert len(set(NAMES)) == len(NAMES) and len({one.title for one in peers.every_peer()}) == len(NAMES)
+    for one in peers.every_peer():
+        assert {one.arithmetic, one.mesh_type, one.rays_type} <= {"f32", "f64"} and one.package
+        assert all(sentence.endswith(".") for sentence in one.conventions), one.name
+    assert list(peers.LEFT_OUT) == sorted(peers.LEFT_OUT, key=str.lower)
+    with pytest.raises(RaypencilError, match="no peer `embre`; expected one of embree, "):
+        peers.peer("embre")
+
+
+Change = Callable[[raypencil.Mesh, Hits], Hits]
+
+
+def changed(change: Change) -> Peer:
+    """The referee, with a mistake in its adapter."""
+
+    class Planted(Referee):
+        def first(self, mesh: raypencil.Mesh, rays: Rays) -> Hits:
+            told = super().first(mesh, rays)
+            return change(mesh, told)
+
+    return Planted()
+
+
+def faces_of(told: Hits) -> NDArray[np.int64]:
+    assert told.face is not None
+    return told.face
+
+
+def culled(mesh: raypencil.Mesh, told: Hits) -> Hits:
+    # Backs are met where t is half a unit away.
+    is_back = told.hit & np.isin(told.t, [1.0, 0.5, 0.125]) & ~np.isin(told.t, [2.0, 4.0])
+    return Hits(np.where(is_back, -1, faces_of(told)), np.where(is_back, np.inf, told.t))
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda mesh, told: Hits(np.where(told.hit, faces_of(told) + 1, -1), told.t), "face 12; expected 11"),
+        (lambda mesh, told: Hits(np.where(told.hit, 11 - faces_of(told), -1), told.t), "face 11; expected 0"),
+        (lambda mesh, told: Hits(np.where(told.hit, faces_of(told) ^ 1, -1), told.t), "face 1; expected 0"),
+        (lambda mesh, told: Hits(told.face, np.where(told.hit, 2.0, np.inf)), "t is 2; expected 4"),
+        (lambda mesh, told: Hits(np.maximum(faces_of(told), 0), np.where(told.hit, told.t, 9.0)), "a hit; expected none"),
+        (lambda mesh, told: Hits(faces_of(told)[:1], told.t[:1]), r"shape \(1,\)"),
+        (culled, "its back: no hit; expected a hit"),
+    ],
+    ids=["off by one", "reversed", "pairs swapped", "t not scaled", "misses told as hits", "too few", "backs culled"],
+)
+def test_a_mistake_in_an_adapter_is_red(change: Change, words: str) -> None:
+    assert mixed_up(changed(lambda mesh, told: told)) == []
+    told = "\n".join(mixed_up(changed(change)))
+    assert re.search(words, told), told
+
+
+def test_ends_of_rays_and_all_hits_are_looked_at() -> None:
+    class Endless(Referee):
+        def shoot(self, built: object, rays: Rays) -> Hits:
+            endless = rays.copy()
+            endless[:, 7] = np.inf
+            return super().shoot(built, endless)
+
+    assert any("ends before" in sentence for sentence in mixed_up(Endless()))
+
+    class Backwards(Tracer):
+        def all(self, mesh: raypencil.Mesh, rays: Rays) -> list[list[tuple[int, float]]]:
+            return [[(0, 1.0)] for _ in rays]
+
+    assert any("of all hits" in sentence for sentence in mixed_up(Backwards()))
+
+
+def test_a_question_is_what_the_peer_reads() -> None:
+    class Single(Referee):
+        mesh_type = rays_type = "f32"
+
+    class Unit(Referee):
+        is_unit = True
+
+    mesh = raypencil.Mesh([[0, 0, 0.1], [4, 0, 0.1], [0, 4, 0.1]], [[0, 1, 2]])
+    rays = np.array(
+        [
+            [1, 1, 3, 0, 0, -2.1, 0, 5],
+            [1, 1, 3, 0, 0, -2, 1, 5],  # has a t_min
+            [1, 1, 3, 0, 0, -1e60, 0, 5],  # too long for f32
+            [1, 1, 3, 0, 0, -1e-60, 0, 5],  # too short for it
+        ]
+    )
+    single = peers.asked(Single, mesh, rays)
+    assert single.of.tolist() == [0] and single.rays[0, 5] == np.float32(-2.1) and single.mesh.vertices[0, 2] == np.float32(0.1)
+    unit = peers.asked(Unit, mesh, rays)
+    assert unit.of.tolist() == [0, 2, 3] and unit.rays[:, 3:6].tolist() == [[0, 0, -1]] * 3
+    # The end of a ray is a length then.
+    assert unit.rays[:, 7].tolist() == [10.5, np.inf, 5e-60] and unit.t.tolist() == [2.9, 2.9, np.inf]
+    assert unit.nearest == [{0}, {0}, set()]
+
+
+def test_what_a_peer_answers_is_counted() -> None:
+    mesh = raypencil.Mesh([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 1], [4, 0, 1], [0, 4, 1]], [[0, 1, 2], [3, 4, 5]])
+    rays = np.array([[1, 1, 3, 0, 0, -1.0], [1, 1.5, 3, 0, 0, -1], [9, 9, 3, 0, 0, -1], [2, 2, 3, 0, 0, -1], [-1, 1, 0, 1, 0, 0]])
+    question = peers.asked(Referee, mesh, rays)
+    right = Referee().first(mesh, question.rays)
+    counts, wrong = peers.judged(Referee, question, right)
+    assert counts == peers.Counts(5) and wrong.tolist() == []
+    # Missed; another face; invented; right for a ray beside it, which misses; a face in whose plane the ray lies.
+    told = Hits(np.array([-1, 0, 1, -1, 0]), np.array([np.inf, 3, 2, np.inf, 1]))
+    counts, wrong = peers.judged(Referee, question, told)
+    assert counts == peers.Counts(5, missed=2, invented=2, other=1, wrong=4) and wrong.tolist() == [0, 1, 2, 4]
+
+    class InPlane(Referee):
+        meets_in_plane = True
+
+    counts, wrong = peers.judged(InPlane, question, told)
+    assert counts == peers.Counts(5, missed=2, invented=1, other=1, wrong=3, convention=1) and wrong.tolist() == [0, 1, 2]
+    late = Hits(right.face, np.where(right.hit, right.t + 0.25, np.inf))
+    assert peers.judged(Referee, question, late)[0] == peers.Counts(5, ranges=3)
+    # Without faces it is t that is judged.
+    assert peers.judged(Referee, question, Hits(None, late.t))[0] == peers.Counts(5, other=3, wrong=3)
+    assert (counts + counts).rays == 10 and counts.differing == 4
