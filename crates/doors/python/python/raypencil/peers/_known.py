@@ -41,6 +41,7 @@ _CLASSES: tuple[type[Peer], ...] = (
     vtk.VtkObbTree,
     vtk.VtkCellLocator,
     vtk.VtkStaticCellLocator,
+    vtk.VtkTolerance,
     vtk.VtkBspTree,
     vtk.VtkCellTree,
     warp.Warp,

@@ -104,6 +104,8 @@ class Peer:
     meets_in_plane: ClassVar[bool] = False
     #: What it has otherwise than others, a sentence each.
     conventions: ClassVar[tuple[str, ...]] = ()
+    #: What a user should do that no threshold says, each a clause.
+    advice: ClassVar[tuple[str, ...]] = ()
     #: Whether it asks each face without a tree: then it is not asked on large meshes.
     is_brute_force: ClassVar[bool] = False
 

@@ -19,6 +19,7 @@ class Cgal(Peer):
     meets_in_plane = True
     conventions = (
         "A ray that lies in a face's plane meets the face in a segment, whose near end is taken here.",
+        "`Ray_3` keeps a second point, origin plus direction: what a direction has below the origin's last digit is lost.",
         "The exact set of faces is asked (`all_intersections`), for the bindings have no call for the first.",
     )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import tempfile
@@ -24,7 +25,7 @@ _SCRIPTS = Path(__file__).parent / "scripts"
 
 def _message(text: str) -> str:
     """The error in what Node writes: without the line of source, which may be a whole program, and the stack."""
-    lines = [line for line in text.splitlines() if "Error" in line and len(line) < 400]
+    lines = [line for line in text.splitlines() if re.match(r"\w*Error\b", line)]
     return lines[0].strip() if lines else text.strip()[-200:]
 
 
@@ -97,7 +98,7 @@ class ThreeMeshBvh(NodePeer):
 
 
 class Rapier(NodePeer):
-    """`TriMesh.castRayAndGetNormal`, which is parry's in single precision. It tells the side of a face, not which it is."""
+    """`Collider.castRayAndGetNormal` of a `TriMesh`, which is parry's in single precision. It tells the side of a face, not which it is."""
 
     name, title, package, script = "rapier", "Rapier (parry)", "@dimforge/rapier3d-compat", "rapier.mjs"
     conventions = ("`featureId` is the side of the face, not its number; so t alone is judged.",)

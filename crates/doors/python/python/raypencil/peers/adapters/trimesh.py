@@ -19,7 +19,7 @@ class Trimesh(Peer):
     name, title, package = "trimesh", "trimesh", "trimesh"
     arithmetic: ClassVar[Arithmetic] = "f64"
     mesh_type: ClassVar[Arithmetic] = "f64"
-    rays_type = "f64"
+    rays_type: ClassVar[Arithmetic] = "f64"
     module = "trimesh.ray.ray_triangle"
 
     def build(self, mesh: Mesh) -> Built:
@@ -55,6 +55,7 @@ class TrimeshEmbree(Trimesh):
     name, title = "trimesh-embree", "trimesh with Embree"
     arithmetic = "f32"
     mesh_type = "f32"
+    rays_type = "f32"
     module = "trimesh.ray.ray_pyembree"
 
     def build(self, mesh: Mesh) -> Built:

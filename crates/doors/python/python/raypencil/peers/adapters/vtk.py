@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import numpy as np
 
 from ..._mesh import Mesh
@@ -15,8 +17,13 @@ class VtkObbTree(Peer):
     arithmetic = mesh_type = rays_type = "f64"
     is_segment = True
     meets_in_plane = True
-    conventions = ("It takes a tolerance, which is 0 here.",)
+    conventions: ClassVar[tuple[str, ...]] = ("It takes a tolerance, which is 0 here.",)
+    advice: ClassVar[tuple[str, ...]] = (
+        "give a tolerance of about 1e-12 of the mesh's width, as in the row *with tolerance*: then rays through edges are stopped",
+    )
     kind = "vtkOBBTree"
+    #: In widths of the mesh.
+    tolerance = 0.0
 
     def build(self, mesh: Mesh) -> Built:
         vtk = need("vtkmodules.all", self.package)
@@ -34,10 +41,11 @@ class VtkObbTree(Peer):
         locator = getattr(vtk, self.kind)()
         locator.SetDataSet(data)
         locator.BuildLocator()
-        return vtk, locator, data, np.array(mesh.vertices)
+        tolerance = self.tolerance * float(np.ptp(mesh.vertices, axis=0).max())
+        return vtk, locator, data, np.array(mesh.vertices), tolerance
 
     def shoot(self, built: Built, rays: Rays) -> Hits:
-        vtk, locator, _, vertices = built
+        vtk, locator, _, vertices, tolerance = built
         length = segment_length(vertices, rays)
         ends = rays[:, 0:3] + length[:, None] * rays[:, 3:6]
         face, t = np.full(len(rays), -1), np.full(len(rays), np.inf)
@@ -45,7 +53,7 @@ class VtkObbTree(Peer):
         any_cell = vtk.vtkGenericCell()
         for k in range(len(rays)):
             start, end = rays[k, 0:3].tolist(), ends[k].tolist()
-            if locator.IntersectWithLine(start, end, 0.0, at, point, weights, part, cell, any_cell):
+            if locator.IntersectWithLine(start, end, tolerance, at, point, weights, part, cell, any_cell):
                 face[k], t[k] = cell.get(), at.get() * length[k]
         return hits(face, t, rays)
 
@@ -60,6 +68,15 @@ class VtkStaticCellLocator(VtkObbTree):
     """`vtkStaticCellLocator`."""
 
     name, title, kind = "vtk-static", "VTK, static cell locator", "vtkStaticCellLocator"
+
+
+class VtkTolerance(VtkStaticCellLocator):
+    """`vtkStaticCellLocator` with a tolerance of 1e-12 of the mesh's width."""
+
+    name, title = "vtk-tolerance", "VTK, static cell locator, with tolerance"
+    conventions = ("Its tolerance is 1e-12 of the mesh's width here.",)
+    advice = ()
+    tolerance = 1e-12
 
 
 class VtkBspTree(VtkObbTree):

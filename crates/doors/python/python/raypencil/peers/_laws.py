@@ -1,0 +1,264 @@
+"""How a peer's answers change with one number: the mesh's size, the distance, the angle, the faces' shape, the direction's length."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._mesh import Mesh
+from ._peer import Peer, Rays
+from ._question import asked, judged
+
+_WIDE = 8
+
+
+@dataclass(frozen=True)
+class Law:
+    """One number that is swept.
+
+    Attributes:
+        name: as the tables have it.
+        axis: what the number is.
+        values: what is asked, in order.
+        ask: mesh and rays for a value. Every ray meets the inside of one face, far from its edges.
+        below, above: the words for rays beyond a threshold, with `{}` for it.
+    """
+
+    name: str
+    axis: str
+    values: tuple[float, ...]
+    ask: Callable[[float], tuple[Mesh, Rays]]
+    below: str
+    above: str
+
+
+@dataclass(frozen=True)
+class Threshold:
+    """A value beyond which half of the rays or more are wrong.
+
+    Attributes:
+        law: the law's name.
+        side: whether the rays beyond are those at smaller or at larger values.
+        at: the value, by bisection.
+        share: of the rays at the next value that was asked how many are wrong, 0 to 1.
+        missed: and how many of the wrong ones are misses, 0 to 1.
+    """
+
+    law: str
+    side: Literal["below", "above"]
+    at: float
+    share: float
+    missed: float
+
+
+def bumpy(count: int, height: float = 0.02) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """A ground from -0.5 to 0.5 of 2 count^2 faces, with bumps: vertices and faces."""
+    ends = np.linspace(-0.5, 0.5, count + 1)
+    x, y = (part.ravel() for part in np.meshgrid(ends, ends))
+    # Bumps without a random generator, whose numbers may change with its version.
+    z = height * (np.sin(13 * x + 5 * y) + np.cos(11 * y - 7 * x)) if height else np.zeros_like(x)
+    # In sixteenths of a millionth, so that single precision has them too.
+    vertices = np.round(np.stack([x, y, z], axis=1) * 2**20) / 2**20
+    first = (np.arange(count)[:, None] * (count + 1) + np.arange(count)).ravel()
+    one = np.stack([first, first + 1, first + count + 2], axis=1)
+    two = np.stack([first, first + count + 2, first + count + 1], axis=1)
+    return vertices, np.stack([one, two], axis=1).reshape(-1, 3)
+
+
+def _targets(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> NDArray[np.float64]:
+    """A place inside of each fourth face and a neighbour of it, in turns: to prove that an answer is wrong takes long."""
+    faces = faces[(np.arange(len(faces)) % 8 < 2)]
+    return np.asarray(np.einsum("k,fkx->fx", np.array([0.4, 0.35, 0.25]), vertices[faces]))
+
+
+def _down(targets: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Directions nearly down, 1 long, each its own."""
+    number = np.arange(len(targets))
+    way = np.stack([0.2 * np.sin(number), 0.2 * np.cos(2 * number), -np.ones(len(targets))], axis=1)
+    return np.asarray(way / np.linalg.norm(way, axis=1, keepdims=True))
+
+
+def _rays(origins: NDArray[np.float64], directions: NDArray[np.float64]) -> Rays:
+    ends = np.broadcast_to([0.0, np.inf], (len(origins), 2))
+    return np.concatenate([origins, directions, ends], axis=1)
+
+
+def _of_scale(scale: float) -> tuple[Mesh, Rays]:
+    vertices, faces = bumpy(_WIDE)
+    targets = _targets(vertices, faces)
+    way = _down(targets)
+    return Mesh(vertices * scale, faces), _rays((targets - way) * scale, way)
+
+
+def _of_distance(distance: float) -> tuple[Mesh, Rays]:
+    vertices, faces = bumpy(_WIDE)
+    targets = _targets(vertices, faces)
+    way = _down(targets)
+    return Mesh(vertices, faces), _rays(targets - distance * way, way)
+
+
+def _solid(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> Mesh:
+    """A flat mesh, with a face aside and below that no ray meets: some peers refuse a mesh without a volume."""
+    aside = np.array([[2, 0, -1], [2.125, 0, -1], [2, 0.125, -1.25]])
+    return Mesh(np.concatenate([vertices, aside]), np.concatenate([faces, len(vertices) + np.array([[0, 1, 2]])]))
+
+
+def _of_angle(angle: float) -> tuple[Mesh, Rays]:
+    vertices, faces = bumpy(_WIDE, height=0.0)
+    targets = _targets(vertices, faces)
+    turn = np.arange(len(targets)) * 0.7
+    way = np.stack([np.cos(turn) * np.cos(angle), np.sin(turn) * np.cos(angle), np.full(len(turn), -np.sin(angle))], axis=1)
+    # The height is that of the direction, so that the ray meets the floor at t = 1 whatever its rounding.
+    return _solid(vertices, faces), _rays(targets - way, way)
+
+
+def _of_aspect(aspect: float) -> tuple[Mesh, Rays]:
+    k = np.arange(33)
+    left, right = (np.stack([np.full(33, x), k / aspect, np.zeros(33)], axis=1) for x in (0.0, 1.0))
+    vertices = np.concatenate([left, right])
+    one = np.stack([k[:-1], k[:-1] + 33, k[1:] + 33], axis=1)
+    two = np.stack([k[:-1], k[1:] + 33, k[1:]], axis=1)
+    faces = np.concatenate([one, two])
+    targets = _targets(vertices, faces)
+    way = np.broadcast_to([0.0, 0.0, -1.0], targets.shape)
+    return _solid(vertices, faces), _rays(targets - way, way)
+
+
+def _of_length(length: float) -> tuple[Mesh, Rays]:
+    vertices, faces = bumpy(_WIDE)
+    targets = _targets(vertices, faces)
+    way = _down(targets)
+    return Mesh(vertices, faces), _rays(targets - way, way * length)
+
+
+def _decades(first: int, last: int, step: int = 1) -> tuple[float, ...]:
+    return tuple(float(f"1e{k}") for k in range(first, last + 1, step))
+
+
+#: All laws. The meshes are 1 wide, in 128 faces or fewer, and rays begin 1 away, but for what a law changes.
+LAWS: dict[str, Law] = {
+    law.name: law
+    for law in (
+        Law(
+            "scale", "width of the mesh", _decades(-9, 9), _of_scale,
+            "on a mesh narrower than {}", "on a mesh wider than {}",
+        ),
+        Law(
+            "distance", "distance from origin to surface, in widths of the mesh", _decades(-9, 9), _of_distance,
+            "from nearer to the surface than {} of the mesh's width", "from farther away than {} widths of the mesh",
+        ),
+        Law(
+            "angle", "angle between ray and surface, in radians", _decades(-12, 0), _of_angle,
+            "at less than {} radians to the surface", "at more than {} radians to the surface",
+        ),
+        Law(
+            "aspect", "length over width of the faces", _decades(0, 9), _of_aspect,
+            "on faces less than {} times as long as wide", "on faces more than {} times as long as wide",
+        ),
+        Law(
+            "length", "length of the direction", _decades(-30, 30, 3), _of_length,
+            "with directions shorter than {}", "with directions longer than {}",
+        ),
+    )
+}  # fmt: skip
+
+
+def share_wrong(peer: Peer, law: Law, value: float) -> tuple[float, float] | None:
+    """At one value: the share of wrong rays, by the rule of `raypencil check`, and the share of these that are misses.
+
+    ``None`` where the peer's types do not have the question.
+    """
+    question = asked(peer, *law.ask(value))
+    # A mesh that rounding flattens has no right answer to lose.
+    if len(question.rays) == 0 or not any(question.nearest):
+        return None
+    told = peer.first(question.mesh, question.rays)
+    _, wrong = judged(peer, question, told)
+    return len(wrong) / len(question.rays), float((~told.hit[wrong]).mean()) if len(wrong) else 0.0
+
+
+def thresholds(peer: Peer, law: Law, shares: dict[float, tuple[float, float] | None]) -> list[Threshold]:
+    """Where half of a law's rays become wrong: once for each side, by ten halvings between two values that were asked.
+
+    Args:
+        peer: is asked again, between the values.
+        law: one of :data:`LAWS`.
+        shares: of each value of the law, by :func:`share_wrong`.
+    """
+    asked_values = [value for value in law.values if shares.get(value) is not None]
+
+    def is_lost(value: float) -> bool:
+        share = shares.get(value) or share_wrong(peer, law, value)
+        return share is not None and share[0] >= 0.5
+
+    if not asked_values:
+        return []
+    # The easy middle: the value nearest to 1 that is answered rightly.
+    fine = [value for value in asked_values if not is_lost(value)]
+    if not fine:
+        return []
+    middle = min(fine, key=lambda value: abs(np.log10(value)))
+    found = []
+    sides: tuple[Literal["below", "above"], ...] = ("below", "above")
+    for side in sides:
+        inner = middle
+        for value in sorted(asked_values, reverse=side == "below"):
+            if value == middle or (value < middle) != (side == "below"):
+                continue
+            if is_lost(value):
+                low, high = np.log10(inner), np.log10(value)
+                for _ in range(10):
+                    half = (low + high) / 2
+                    low, high = (low, half) if is_lost(10**half) else (half, high)
+                share, missed = shares[value] or (0.0, 0.0)
+                found.append(Threshold(law.name, side, float(10**high), share, missed))
+                break
+            inner = value
+    return found
+
+
+def number(value: float) -> str:
+    """Two digits: `2.4e-05`, `0.012`."""
+    return f"{value:.2g}"
+
+
+def parts(one: Threshold) -> tuple[str, str]:
+    """A threshold in words, without the peer's name: `misses every ray`, and `on a mesh narrower than 0.01`."""
+    law = LAWS[one.law]
+    rays = "every ray" if one.share > 0.99 else "nearly every ray" if one.share > 0.9 else "more than half of all rays"
+    words = (law.below if one.side == "below" else law.above).format(number(one.at))
+    return f"{'misses' if one.missed > 0.5 else 'answers wrongly'} {rays}", words
+
+
+def sentence(found: Sequence[Threshold]) -> str:
+    """Thresholds as one sentence: what the page says of a peer."""
+    told: dict[str, list[str]] = {}
+    for what, words in map(parts, found):
+        told.setdefault(what, []).append(words)
+    return f"It {listed([f'{what} {listed(words)}' for what, words in told.items()])}."
+
+
+def listed(words: Sequence[str]) -> str:
+    """`one`, `one and two`, `one, two and three`."""
+    return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " and " + words[-1]
+
+
+def determinant(found: Sequence[Threshold]) -> float | None:
+    """The threshold on the determinant of edges and direction that explains several thresholds, if they agree on one.
+
+    Möller and Trumbore's test divides by it: the product of the edges, the direction's length and the sine of the angle. The
+    edges are 1/8 long where the mesh is 1 wide.
+    """
+    edge = 1 / _WIDE
+    said = [
+        {"scale": (one.at * edge) ** 2, "angle": one.at * edge**2, "length": one.at * edge**2}[one.law]
+        for one in found
+        if one.side == "below" and one.law in ("scale", "angle", "length")
+    ]
+    if len(said) < 2 or max(said) > 1.3 * min(said):
+        return None
+    return float(f"{np.exp(np.mean(np.log(said))):.1g}")

@@ -1,0 +1,123 @@
+"""All that the page says of a peer, measured: as plain numbers that a JSON file can keep."""
+
+from __future__ import annotations
+
+import json
+import platform
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..testing import hard_rays
+from ._known import peer
+from ._laws import LAWS, Threshold
+from ._peer import Peer, Unavailable
+from ._question import Counts
+from ._worker import Job, work
+
+#: Rays of the measurement of speed, at most.
+_RAYS = 65536
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """What was measured of a peer.
+
+    Attributes:
+        peer: its adapter.
+        version: of its package.
+        families: the counts of each family of hard rays, or what the peer said when it refused the mesh.
+        shares: for each law the values, and at each the share of wrong rays; ``None`` where the peer could not be asked.
+        thresholds: where half of the rays become wrong.
+        speed: rays a second on a ground of 8192 faces; ``None`` where it could not be asked.
+    """
+
+    peer: Peer
+    version: str
+    families: dict[str, Counts | str]
+    shares: dict[str, list[tuple[float, float | None]]]
+    thresholds: list[Threshold]
+    speed: float | None
+
+    @property
+    def total(self) -> Counts:
+        """The counts of all families that it answered."""
+        return sum((counts for counts in self.families.values() if isinstance(counts, Counts)), Counts())
+
+    @property
+    def refused(self) -> dict[str, str]:
+        """The families whose mesh it refused, and what it said."""
+        return {name: said for name, said in self.families.items() if isinstance(said, str)}
+
+
+def jobs() -> list[Job]:
+    """All that a peer is asked."""
+    return [{"family": name} for name in hard_rays()] + [{"law": name} for name in LAWS] + [{"speed": True, "rays": _RAYS}]
+
+
+def of_answers(one: Peer, version: str, answers: Sequence[dict[str, Any]]) -> Measured:
+    """The answers to :func:`jobs` as what was measured."""
+    families: dict[str, Counts | str] = {}
+    shares: dict[str, list[tuple[float, float | None]]] = {}
+    found: list[Threshold] = []
+    speed = None
+    for job, told in zip(jobs(), answers, strict=True):
+        answer = told.get("answer")
+        if "family" in job:
+            families[job["family"]] = told["refused"] if answer is None else Counts(*answer)
+        elif "law" in job:
+            law = LAWS[job["law"]]
+            if answer is None:
+                shares[law.name] = [(value, None) for value in law.values]
+            else:
+                shares[law.name] = [(value, share) for value, share, _ in answer["shares"]]
+                found += [Threshold(**threshold) for threshold in answer["thresholds"]]
+        elif answer is not None:
+            speed = answer["rays"] / answer["seconds"]
+    return Measured(one, version, families, shares, found, speed)
+
+
+def measure(
+    names: Sequence[str], kept: Path, tell: Callable[[str], None] = lambda line: None
+) -> tuple[list[Measured], dict[str, str]]:
+    """Asks peers all jobs, one after the other, each in a process of its own.
+
+    Args:
+        names: of peers.
+        kept: a folder for what they answer; a peer whose answers are in it is not asked again.
+        tell: is called with the name of each peer that is asked.
+
+    Returns:
+        What was measured, and the peers that are not installed, each with what would install it.
+    """
+    kept.mkdir(parents=True, exist_ok=True)
+    measured, missing = [], {}
+    for name in names:
+        one, file = peer(name), kept / f"{name}.json"
+        if not file.is_file():
+            try:
+                version = one.version()
+            except Unavailable as error:
+                missing[name] = str(error)
+                continue
+            tell(f"{one.title} {version}")
+            answers = work(name, jobs())
+            if gone := [answer["unavailable"] for answer in answers if "unavailable" in answer]:
+                missing[name] = gone[0]
+                continue
+            data = {"version": version, "jobs": jobs(), "answers": answers}
+            file.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+        data = json.loads(file.read_text(encoding="utf-8"))
+        if data["jobs"] == jobs():
+            measured.append(of_answers(one, data["version"], data["answers"]))
+        else:
+            missing[name] = f"{file} is of other questions: remove it"
+    return measured, missing
+
+
+def machine() -> str:
+    """The machine of the speeds, in words."""
+    import os
+
+    return f"{os.cpu_count()} cores, {platform.machine()}, Python {platform.python_version()}"
