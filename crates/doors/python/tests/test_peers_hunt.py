@@ -224,7 +224,7 @@ def test_the_page_has_a_row_and_a_paragraph_for_each() -> None:
     assert "* embree: not installed (pip install embreex)." in text and all(name in text for name in peers.LEFT_OUT)
     assert all(f"| {name} |" in text for name in raypencil.testing.hard_rays())
     for drawn in (laws_svg(several), speed_svg(several)):
-        assert ElementTree.fromstring(drawn).tag.endswith("svg") and ">Planted<" in drawn
+        assert ElementTree.fromstring(drawn).tag.endswith("svg") and "Planted<" in drawn
     assert 'fill="#cccccc"' in laws_svg(several)
 
 
@@ -257,3 +257,18 @@ def test_the_command(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None
     assert _command.main(["table", "tracer", "--kept", str(kept)]) == 0 and text in capsys.readouterr().out
     (kept / "tracer.json").write_text('{"jobs": [], "version": "", "answers": []}')
     assert _command.main(["table", "tracer", "--kept", str(kept)]) == 2
+
+
+def test_what_is_lost_between_two_values_is_told_so() -> None:
+    class Middling(Tracer):
+        def shoot(self, built: Any, rays: Rays) -> Hits:
+            told = super().shoot(built, rays)
+            length = np.linalg.norm(rays[:, 3:6], axis=1)
+            is_lost = (length > 1e7) & (length < 1e16)
+            assert told.face is not None
+            return Hits(np.where(is_lost, -1, told.face), np.where(is_lost, np.inf, told.t))
+
+    (found,) = found_in(Middling(), "length")
+    assert found.to is not None and 0.9e7 < found.at < 1.1e7 and 0.9e16 < found.to < 1.1e16
+    assert sentence([found]) == "It misses every ray with directions 1e+07 to 1e+16 long."
+    assert determinant([found, found]) is None

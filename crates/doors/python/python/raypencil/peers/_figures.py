@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from html import escape
+from textwrap import wrap
 
 import numpy as np
 
@@ -21,10 +22,10 @@ def _text(x: float, y: float, words: str, anchor: str = "start", more: str = "")
 
 
 def _colour(share: float) -> str:
-    """White at no wrong ray, dark red where all are wrong."""
+    """From pale, at hardly any wrong ray, to dark red, where all are."""
     low, high = np.array([255, 245, 235]), np.array([165, 20, 20])
     mixed = low + (high - low) * share
-    return "#ffffff" if share == 0 else "#" + "".join(f"{round(float(part)):02x}" for part in mixed)
+    return "#" + "".join(f"{round(float(part)):02x}" for part in mixed)
 
 
 def _svg(width: float, height: float, parts: Sequence[str], title: str) -> str:
@@ -40,12 +41,15 @@ def laws_svg(measured: Sequence[Measured]) -> str:
     for law in LAWS.values():
         wide = _CELL * len(law.values)
         parts.append(_text(x, 16, law.name, more='font-weight="bold"'))
-        parts.append(_text(x, 31, law.axis, more='font-size="9"') if len(law.axis) < wide / 4 else _wrapped(x, law.axis))
+        parts += [_text(x, 28 + 10 * k, line, more='font-size="9"') for k, line in enumerate(wrap(law.axis, wide // 5))]
         parts.append(_text(x, _TOP - 4, f"{law.values[0]:g}", more='font-size="9"'))
         parts.append(_text(x + wide, _TOP - 4, f"{law.values[-1]:g}", "end", 'font-size="9"'))
         for row, one in enumerate(measured):
             y = _TOP + row * _ROW
             for k, (_, share) in enumerate(one.shares.get(law.name, [])):
+                if share == 0:
+                    # White is what is below.
+                    continue
                 fill = "#cccccc" if share is None else _colour(share)
                 parts.append(f'<rect x="{x + k * _CELL:g}" y="{y:g}" width="{_CELL}" height="{_ROW - 2}" fill="{fill}"/>')
             parts.append(
@@ -55,15 +59,6 @@ def laws_svg(measured: Sequence[Measured]) -> str:
     for row, one in enumerate(measured):
         parts.append(_text(_NAMES - 6, _TOP + row * _ROW + 11, one.peer.title, "end"))
     return _svg(x, _TOP + len(measured) * _ROW + 6, parts, "Share of wrong rays against one number")
-
-
-def _wrapped(x: float, words: str) -> str:
-    """A long axis in two lines."""
-    first, comma, second = words.partition(", ")
-    lines = [_text(x, 29, first + comma.strip(), more='font-size="9"')]
-    if second:
-        lines.append(_text(x, 40, second, more='font-size="9"'))
-    return "\n".join(lines)
 
 
 def speed_svg(measured: Sequence[Measured]) -> str:
@@ -90,15 +85,15 @@ def speed_svg(measured: Sequence[Measured]) -> str:
     parts.append(_text(left + wide / 2, top + high + 34, "rays a second on 8192 faces", "middle"))
     parts.append(_text(14, top + high / 2, "wrong of the hard rays", "middle", f'transform="rotate(-90 14 {top + high / 2:g})"'))
     taken: list[tuple[float, float]] = []
-    for one, speed in sorted(shown, key=lambda pair: -pair[1]):
+    for number, (one, speed) in enumerate(shown, 1):
         x, y = left + wide * (np.log10(speed) - low) / (up - low), height(one.total.wrong)
-        at = y - 4
-        # Names that would lie on each other move up.
-        while any(abs(at - other) < 11 and abs(x - place) < 110 for place, other in taken):
-            at -= 11
+        at = y
+        # Numbers that would lie on each other move up.
+        while any(abs(at - other) < 10 and abs(x - place) < 16 for place, other in taken):
+            at -= 10
         taken.append((x, at))
         fill = "#1a5fb4" if one.peer.registry == "here" else "#a51414"
-        parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.5" fill="{fill}"/>')
-        is_right = x > left + 0.8 * wide
-        parts.append(_text(round(x + (-6 if is_right else 6), 1), round(at + 4, 1), one.peer.title, "end" if is_right else "start"))
-    return _svg(left + wide + 20, top + high + 44, parts, "Wrong rays against rays a second")
+        parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="{fill}"/>')
+        parts.append(_text(round(x + 5, 1), round(at + 3, 1), str(number), more=f'font-size="9" fill="{fill}"'))
+        parts.append(_text(left + wide + 16, top + 4 + 13 * number, f"{number}  {one.peer.title}"))
+    return _svg(left + wide + 230, max(top + high + 44, top + 20 + 13 * len(shown)), parts, "Wrong rays against rays a second")

@@ -26,6 +26,7 @@ class Law:
         values: what is asked, in order.
         ask: mesh and rays for a value. Every ray meets the inside of one face, far from its edges.
         below, above: the words for rays beyond a threshold, with `{}` for it.
+        between: those for rays between two of them.
     """
 
     name: str
@@ -34,6 +35,7 @@ class Law:
     ask: Callable[[float], tuple[Mesh, Rays]]
     below: str
     above: str
+    between: str
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,7 @@ class Threshold:
         at: the value, by bisection.
         share: of the rays at the next value that was asked how many are wrong, 0 to 1.
         missed: and how many of the wrong ones are misses, 0 to 1.
+        to: the value beyond which most rays are right again; ``None``: they are wrong up to the last value that was asked.
     """
 
     law: str
@@ -53,6 +56,7 @@ class Threshold:
     at: float
     share: float
     missed: float
+    to: float | None = None
 
 
 def bumpy(count: int, height: float = 0.02) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -145,23 +149,26 @@ LAWS: dict[str, Law] = {
     for law in (
         Law(
             "scale", "width of the mesh", _decades(-9, 9), _of_scale,
-            "on a mesh narrower than {}", "on a mesh wider than {}",
+            "on a mesh narrower than {}", "on a mesh wider than {}", "on a mesh {} to {} wide",
         ),
         Law(
             "distance", "distance from origin to surface, in widths of the mesh", _decades(-9, 9), _of_distance,
             "from nearer to the surface than {} of the mesh's width", "from farther away than {} widths of the mesh",
+            "from {} to {} widths of the mesh away",
         ),
         Law(
             "angle", "angle between ray and surface, in radians", _decades(-12, 0), _of_angle,
             "at less than {} radians to the surface", "at more than {} radians to the surface",
+            "at {} to {} radians to the surface",
         ),
         Law(
             "aspect", "length over width of the faces", _decades(0, 9), _of_aspect,
             "on faces less than {} times as long as wide", "on faces more than {} times as long as wide",
+            "on faces {} to {} times as long as wide",
         ),
         Law(
             "length", "length of the direction", _decades(-30, 30, 3), _of_length,
-            "with directions shorter than {}", "with directions longer than {}",
+            "with directions shorter than {}", "with directions longer than {}", "with directions {} to {} long",
         ),
     )
 }  # fmt: skip
@@ -202,22 +209,26 @@ def thresholds(peer: Peer, law: Law, shares: dict[float, tuple[float, float] | N
     if not fine:
         return []
     middle = min(fine, key=lambda value: abs(np.log10(value)))
+    def border(right: float, lost: float) -> float:
+        """The lost value nearest to a right one, by halving their ratio ten times."""
+        inner, outer = np.log10(right), np.log10(lost)
+        for _ in range(10):
+            half = (inner + outer) / 2
+            inner, outer = (inner, half) if is_lost(10**half) else (half, outer)
+        return float(10**outer)
+
     found = []
     sides: tuple[Literal["below", "above"], ...] = ("below", "above")
     for side in sides:
-        inner = middle
-        for value in sorted(asked_values, reverse=side == "below"):
-            if value == middle or (value < middle) != (side == "below"):
-                continue
-            if is_lost(value):
-                low, high = np.log10(inner), np.log10(value)
-                for _ in range(10):
-                    half = (low + high) / 2
-                    low, high = (low, half) if is_lost(10**half) else (half, high)
-                share, missed = shares[value] or (0.0, 0.0)
-                found.append(Threshold(law.name, side, float(10**high), share, missed))
-                break
-            inner = value
+        outward = [v for v in sorted(asked_values, reverse=side == "below") if v != middle and (v < middle) == (side == "below")]
+        first = next((k for k, value in enumerate(outward) if is_lost(value)), None)
+        if first is None:
+            continue
+        at = border(outward[first - 1] if first else middle, outward[first])
+        again = next((k for k in range(first, len(outward)) if not is_lost(outward[k])), None)
+        to = None if again is None else border(outward[again], outward[again - 1])
+        share, missed = shares[outward[first]] or (0.0, 0.0)
+        found.append(Threshold(law.name, side, at, share, missed, to))
     return found
 
 
@@ -230,7 +241,10 @@ def parts(one: Threshold) -> tuple[str, str]:
     """A threshold in words, without the peer's name: `misses every ray`, and `on a mesh narrower than 0.01`."""
     law = LAWS[one.law]
     rays = "every ray" if one.share > 0.99 else "nearly every ray" if one.share > 0.9 else "more than half of all rays"
-    words = (law.below if one.side == "below" else law.above).format(number(one.at))
+    if one.to is None:
+        words = (law.below if one.side == "below" else law.above).format(number(one.at))
+    else:
+        words = law.between.format(*map(number, sorted((one.at, one.to))))
     return f"{'misses' if one.missed > 0.5 else 'answers wrongly'} {rays}", words
 
 
@@ -257,7 +271,7 @@ def determinant(found: Sequence[Threshold]) -> float | None:
     said = [
         {"scale": (one.at * edge) ** 2, "angle": one.at * edge**2, "length": one.at * edge**2}[one.law]
         for one in found
-        if one.side == "below" and one.law in ("scale", "angle", "length")
+        if one.side == "below" and one.to is None and one.law in ("scale", "angle", "length")
     ]
     if len(said) < 2 or max(said) > 1.3 * min(said):
         return None
