@@ -13,8 +13,9 @@ from typing import Any
 import pytest
 
 import raypencil
+import raypencil.peers
 
-MODULES = [raypencil, raypencil.terrain, raypencil.testing, importlib.import_module("raypencil.trimesh")]
+MODULES = [raypencil, raypencil.terrain, raypencil.testing, importlib.import_module("raypencil.trimesh"), raypencil.peers]
 
 #: Classes that people make; all others are made by functions.
 MADE_BY_PEOPLE = {"Mesh", "Scene", "RayMeshIntersector"}
@@ -84,7 +85,7 @@ def unknown_names(module: ModuleType, text: str) -> list[str]:
     """Exceptions and references to what is not there."""
     wrong = []
     for name in names_of_exceptions(text):
-        exception = getattr(raypencil, name, None) or getattr(builtins, name, None)
+        exception = next((found for of in (*MODULES, builtins) if (found := getattr(of, name, None)) is not None), None)
         if not (isinstance(exception, type) and issubclass(exception, Exception)):
             wrong.append(name)
     for path in re.findall(r":\w+:`([\w.]+)`", text):

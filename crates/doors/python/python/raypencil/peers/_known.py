@@ -90,6 +90,9 @@ def every_peer() -> list[Peer]:
 def peer(name: str) -> Peer:
     """A peer by its name.
 
+    Args:
+        name: as `raypencil-peers list` has it.
+
     Raises:
         RaypencilError: there is none of this name; the message lists them.
     """

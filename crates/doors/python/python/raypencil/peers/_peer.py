@@ -121,15 +121,29 @@ class Peer:
             raise Unavailable(f"{self.package} is not installed: pip install {self.package}") from None
 
     def build(self, mesh: Mesh) -> Built:
-        """What it makes of a mesh before it is asked."""
+        """What it makes of a mesh before it is asked.
+
+        Args:
+            mesh: as it reads it.
+        """
         raise NotImplementedError
 
     def shoot(self, built: Built, rays: Rays) -> Hits:
-        """The first hits of rays (n, 8) on what :meth:`build` made. Every t_min is 0."""
+        """The first hits on what a mesh was made into.
+
+        Args:
+            built: of :meth:`build`.
+            rays: (n, 8), with t_min 0.
+        """
         raise NotImplementedError
 
     def timed(self, built: Built, rays: Rays) -> tuple[Hits, float]:
-        """:meth:`shoot`, and the seconds that it took."""
+        """The first hits, and the seconds that they took.
+
+        Args:
+            built: of :meth:`build`.
+            rays: (n, 8), with t_min 0.
+        """
         start = time.perf_counter()
         told = self.shoot(built, rays)
         return told, time.perf_counter() - start
@@ -146,11 +160,21 @@ class Peer:
         return self.shoot(self.build(mesh), rays)
 
     def any(self, mesh: Mesh, rays: Rays) -> NDArray[np.bool_] | None:
-        """Whether each ray hits anything, by the peer's own call for it; ``None`` where it has none."""
+        """Whether each ray hits anything, by the peer's own call for it; ``None`` where it has none.
+
+        Args:
+            mesh: as it reads it.
+            rays: (n, 8), with t_min 0.
+        """
         return None
 
     def all(self, mesh: Mesh, rays: Rays) -> list[list[tuple[int, float]]] | None:
-        """All hits of each ray, face and t in order of t, by the peer's own call for it; ``None`` where it has none."""
+        """All hits of each ray, face and t in order of t, by the peer's own call for it; ``None`` where it has none.
+
+        Args:
+            mesh: as it reads it.
+            rays: (n, 8), with t_min 0.
+        """
         return None
 
 

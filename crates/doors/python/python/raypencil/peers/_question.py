@@ -115,6 +115,7 @@ def asked(peer: Peer | type[Peer], mesh: Mesh, rays: Rays) -> Question:
     type does not have. Where a peer wants directions of length 1, they are made so first, and t is then a length.
 
     Args:
+        peer: whose types decide.
         mesh: any mesh.
         rays: (n, 6) or (n, 8).
     """
@@ -155,8 +156,12 @@ def lies_in_plane(mesh: Mesh, face: int, ray: NDArray[np.float64]) -> bool:
 def judged(peer: Peer | type[Peer], question: Question, told: Hits) -> tuple[Counts, NDArray[np.intp]]:
     """Counts a peer's answers, and judges its first hits by the rule of `raypencil check`, at the peer's own arithmetic.
 
-    Returns:
-        The counts, and the indices of the rays whose first hit is wrong by the rule, among those of the question.
+    The counts are followed by the indices of the rays whose first hit is wrong by the rule, among those of the question.
+
+    Args:
+        peer: whose arithmetic decides.
+        question: what was asked.
+        told: what the peer told.
     """
     if len(question.rays) == 0:
         return Counts(), np.zeros(0, dtype=np.intp)
