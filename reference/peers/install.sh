@@ -17,8 +17,8 @@ pip=("$environment/bin/python" -m pip install --quiet --disable-pip-version-chec
 if command -v npm >/dev/null; then
     mkdir -p "$environment/node"
     npm install --silent --no-audit --no-fund --prefix "$environment/node" \
-        three three-mesh-bvh @dimforge/rapier3d-compat cannon-es jolt-physics
+        three three-mesh-bvh @babylonjs/core @dimforge/rapier3d-compat cannon-es jolt-physics
 else
-    echo "there is no npm: three.js, three-mesh-bvh, Rapier, cannon-es and Jolt are left out" >&2
+    echo "there is no npm: three.js, three-mesh-bvh, Babylon.js, Rapier, cannon-es and Jolt are left out" >&2
 fi
 du -sh "$environment"

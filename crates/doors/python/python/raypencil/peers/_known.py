@@ -57,6 +57,7 @@ _CLASSES: tuple[type[Peer], ...] = (
     node.CannonEs,
     node.Three,
     node.ThreeMeshBvh,
+    node.Babylon,
     panda3d.Panda3D,
     raylib.Raylib,
     raysect.Raysect,

@@ -178,6 +178,13 @@ const [face, t] = found ? [found.faceIndex, found.distance] : [-1, Infinity];"""
     + """const ray = new THREE.Ray(new THREE.Vector3(...o), new THREE.Vector3(...d));
 const found = new MeshBVH(geometry, { indirect: true }).raycastFirst(ray, THREE.DoubleSide);
 const [face, t] = found ? [found.faceIndex, found.distance] : [-1, Infinity];""",
+    "babylon": """import * as BABYLON from "@babylonjs/core";
+const mesh = new BABYLON.Mesh("mesh", new BABYLON.Scene(new BABYLON.NullEngine()));
+const data = new BABYLON.VertexData();
+data.positions = new Float32Array(V.flat()); data.indices = F.flat();
+data.applyToMesh(mesh); mesh.computeWorldMatrix(true);
+const found = mesh.intersects(new BABYLON.Ray(new BABYLON.Vector3(...o), new BABYLON.Vector3(...d), Number.MAX_VALUE));
+const [face, t] = found.hit ? [found.faceId, found.distance] : [-1, Infinity];""",
     "rapier": """import RAPIER from "@dimforge/rapier3d-compat";
 await RAPIER.init();
 const world = new RAPIER.World({ x: 0, y: 0, z: 0 });

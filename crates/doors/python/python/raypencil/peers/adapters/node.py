@@ -97,6 +97,16 @@ class ThreeMeshBvh(NodePeer):
     is_unit = True
 
 
+class Babylon(NodePeer):
+    """`Mesh.intersects`, with an engine that draws nothing."""
+
+    name, title, package, script = "babylon", "Babylon.js", "@babylonjs/core", "babylon.mjs"
+    arithmetic = rays_type = "f64"
+    mesh_type = "f32"
+    # Its distance is a length, whatever the direction's is.
+    is_unit = True
+
+
 class Rapier(NodePeer):
     """`Collider.castRayAndGetNormal` of a `TriMesh`, which is parry's in single precision. It tells the side of a face, not which it is."""
 
