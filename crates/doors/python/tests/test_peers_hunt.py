@@ -17,7 +17,7 @@ from raypencil import peers
 from raypencil.peers import Counts, Hits, _command, _known, _snippets
 from raypencil.peers._figures import laws_svg, speed_svg
 from raypencil.peers._hunt import hunted, hunting_rays, reproduces, script, told_by
-from raypencil.peers._laws import LAWS, Threshold, determinant, sentence, share_wrong, thresholds
+from raypencil.peers._laws import LAWS, Threshold, explained, sentence, share_wrong, thresholds
 from raypencil.peers._measure import Measured, measure, of_answers
 from raypencil.peers._ours import Referee, Tracer
 from raypencil.peers._page import cell, page, paragraph
@@ -79,16 +79,24 @@ def test_a_threshold_is_found_and_told_in_words(planted: Planted) -> None:
     # The edges are 1/8 of the mesh's width: the determinant is 1/64 of its square, and the slant of the rays takes 2 %.
     assert [(one.law, one.side) for one in found] == [("scale", "below"), ("length", "below")]
     assert sentence(found) == "It misses every ray on a mesh narrower than 0.0081 and with directions shorter than 6.6e-05."
-    assert determinant(found) == 1e-6
+    assert explained(found) == "All of these are what a test does that takes a determinant below 1e-06 for 0."
 
     class Coarser(Planted):
         threshold = "1e-4"
 
     (coarser,) = found_in(Coarser(), "length")
-    assert determinant([coarser, Threshold("scale", "below", 0.08, 1.0, 1.0)]) == 1e-4
+    of_both = explained([coarser, Threshold("scale", "below", 0.08, 1.0, 1.0)])
+    assert of_both is not None and "a determinant below 0.0001 for 0" in of_both
     # One number alone, or numbers that do not agree, explain nothing.
-    assert determinant(found[:1]) is None
-    assert determinant([found[0], Threshold("length", "below", 1e-3, 1.0, 1.0)]) is None
+    assert explained(found[:1]) is None
+    length = Threshold("length", "below", 1e-3, 1.0, 1.0)
+    assert explained([found[0], length]) is None
+    # A plane's normal has no size.
+    angle = Threshold("angle", "below", 1e-3, 1.0, 1.0)
+    assert explained([angle, length]) == "Both are what a test does that takes unit normal times direction below 0.001 for 0."
+    assert explained([found[0], angle, length]) == (
+        "Angle and length are what a test does that takes unit normal times direction below 0.001 for 0."
+    )
 
 
 def test_the_tracer_has_no_threshold() -> None:
@@ -271,4 +279,4 @@ def test_what_is_lost_between_two_values_is_told_so() -> None:
     (found,) = found_in(Middling(), "length")
     assert found.to is not None and 0.9e7 < found.at < 1.1e7 and 0.9e16 < found.to < 1.1e16
     assert sentence([found]) == "It misses every ray with directions 1e+07 to 1e+16 long."
-    assert determinant([found, found]) is None
+    assert explained([found, found]) is None

@@ -261,18 +261,28 @@ def listed(words: Sequence[str]) -> str:
     return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " and " + words[-1]
 
 
-def determinant(found: Sequence[Threshold]) -> float | None:
-    """The threshold on the determinant of edges and direction that explains several thresholds, if they agree on one.
+def explained(found: Sequence[Threshold]) -> str | None:
+    """One threshold of a test of triangles that explains several that were found, in a sentence, if they agree on one.
 
-    Möller and Trumbore's test divides by it: the product of the edges, the direction's length and the sine of the angle. The
-    edges are 1/8 long where the mesh is 1 wide.
+    Möller and Trumbore's test divides by a determinant: the product of two edges, the direction's length and the sine of the
+    angle. The edges are 1/8 long where the mesh is 1 wide. A test of planes divides by the product of unit normal and direction,
+    in which the mesh's size has no part.
     """
+    at = {one.law: one.at for one in found if one.side == "below" and one.to is None}
     edge = 1 / _WIDE
-    said = [
-        {"scale": (one.at * edge) ** 2, "angle": one.at * edge**2, "length": one.at * edge**2}[one.law]
-        for one in found
-        if one.side == "below" and one.to is None and one.law in ("scale", "angle", "length")
-    ]
-    if len(said) < 2 or max(said) > 1.3 * min(said):
-        return None
-    return float(f"{np.exp(np.mean(np.log(said))):.1g}")
+    scale = (at["scale"] * edge) ** 2 if "scale" in at else None
+    others = [at[name] for name in ("angle", "length") if name in at]
+    if scale is not None and others and _agree([scale, *(other * edge**2 for other in others)]):
+        return f"All of these are what a test does that takes a determinant below {_digit(scale)} for 0."
+    if len(others) == 2 and _agree(others):
+        what = "Angle and length" if len(at) > 2 else "Both"
+        return f"{what} are what a test does that takes unit normal times direction below {_digit(others[0])} for 0."
+    return None
+
+
+def _agree(values: Sequence[float]) -> bool:
+    return max(values) < 1.3 * min(values)
+
+
+def _digit(value: float) -> str:
+    return f"{float(f'{value:.1g}'):g}"

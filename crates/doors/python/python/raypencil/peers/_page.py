@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from ..testing import hard_rays
 from ._known import LEFT_OUT
-from ._laws import LAWS, Threshold, determinant, listed, number, sentence
+from ._laws import LAWS, Threshold, explained, listed, sentence
 from ._measure import Measured, machine
 from ._peer import Peer
 from ._question import Counts
@@ -96,17 +96,17 @@ def paragraph(one: Measured) -> str:
         )
         told = listed([f"{name} {wrong}" for name, wrong in worst[:4]])
         more = " and others" if len(worst) > 4 else ""
-        said.append(f"{total.wrong} of {total.rays} first hits are wrong: {told}{more}.")
+        said.append(f"{total.wrong} of {total.rays} first hits {_are(total.wrong)} wrong: {told}{more}.")
     through = [one.families.get(name) for name in ("edges", "vertices")]
     leaks = sum(counts.wrong for counts in through if isinstance(counts, Counts))
     if leaks:
-        said.append(f"Of 830 rays through edges and vertices of a closed mesh {leaks} are not stopped where they should be.")
+        said.append(f"Of 830 rays through edges and vertices of a closed mesh {leaks} {_are(leaks)} not stopped where they should be.")
     if one.thresholds:
         said.append(sentence(one.thresholds))
-    if zero := determinant(one.thresholds):
-        said.append(f"All of these are what a test does that takes a determinant below {number(zero)} for 0.")
+    if why := explained(one.thresholds):
+        said.append(why)
     if total.ranges:
-        said.append(f"{total.ranges} ranges are off by more than rounding.")
+        said.append(f"{total.ranges} range{'s' * (total.ranges != 1)} {_are(total.ranges)} off by more than rounding.")
     if one.refused:
         said.append(f"It refuses the mesh of {listed(list(one.refused))} ({_short(next(iter(one.refused.values())))}).")
     said += list(peer.conventions)
@@ -116,6 +116,10 @@ def paragraph(one: Measured) -> str:
     if advice:
         said.append(f"What to do: {'; '.join(advice)}.")
     return " ".join(said) + f" `raypencil-peers ask {peer.name}`"
+
+
+def _are(count: int) -> str:
+    return "is" if count == 1 else "are"
 
 
 def _short(words: str) -> str:
@@ -146,7 +150,8 @@ def page(measured: Sequence[Measured], missing: Mapping[str, str]) -> str:
         *_table(measured),
         "",
         f"Rays a second: on 8192 faces, in the same run, on a machine of {machine()}; threads as each program takes them by itself,"
-        " and through Python or Node where that is how it is called. It says what a call costs, not what an engine can do.",
+        " and through Python or Node where that is how it is called. It says what a call costs, not what an engine can do. Read the power"
+        " of ten: a run beside other work differs by a factor of two or three.",
         "",
         f"![Wrong rays against rays a second]({SPEED_FIGURE})",
         "",
@@ -161,7 +166,8 @@ def page(measured: Sequence[Measured], missing: Mapping[str, str]) -> str:
         "",
         "## Each program",
         "",
-        "Thresholds are where half of the rays become wrong, by bisection. No cause is named, only what was measured.",
+        "Thresholds are where half of the rays become wrong, by bisection, on the meshes of the curves. No cause is named but where one"
+        " number of a test of triangles explains several thresholds.",
         "",
     ]
     for one in measured:

@@ -130,6 +130,6 @@ class Jolt(NodePeer):
     """`MeshShape.CastRay`, which tells no face that can be counted."""
 
     name, title, package, script = "jolt", "Jolt Physics", "jolt-physics", "jolt.mjs"
-    conventions = ("It tells a number of its own for each face, which is not asked here.",)
+    conventions = ("It tells a number of its own for each face, which does not say which it is; so t alone is judged.",)
     arithmetic = mesh_type = rays_type = "f32"
     is_segment = True
