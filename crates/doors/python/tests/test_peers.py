@@ -142,8 +142,12 @@ def test_what_a_peer_answers_is_counted() -> None:
 
     counts, wrong = peers.judged(InPlane, question, told)
     assert counts == peers.Counts(5, missed=2, invented=1, other=1, wrong=3, convention=1) and wrong.tolist() == [0, 1, 2]
+    # A face to which a ray is parallel, but in whose plane it is not, is none by convention.
+    beside = peers.asked(InPlane, mesh, np.array([[-1, 1, 0.5, 1, 0, 0]]))
+    assert peers.judged(InPlane, beside, Hits(np.array([0]), np.array([1.0])))[0] == peers.Counts(1, invented=1, wrong=1)
     late = Hits(right.face, np.where(right.hit, right.t + 0.25, np.inf))
     assert peers.judged(Referee, question, late)[0] == peers.Counts(5, ranges=3)
     # Without faces it is t that is judged.
     assert peers.judged(Referee, question, Hits(None, late.t))[0] == peers.Counts(5, other=3, wrong=3)
+    assert peers.judged(Referee, question, Hits(None, right.t))[0] == peers.Counts(5)
     assert (counts + counts).rays == 10 and counts.differing == 4

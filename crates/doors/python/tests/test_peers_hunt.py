@@ -167,6 +167,21 @@ def test_a_wrong_ray_is_reduced_to_one_face_and_short_numbers(planted: Planted) 
         reduced(planted, Case(vertices * 300, faces, case.ray * [300, 300, 1, 1, 1, 1, 1, 1]))
 
 
+def test_faces_are_left_out_also_where_none_is_likely() -> None:
+    class Crowded(Referee):
+        """Sees nothing where there are three faces or more."""
+
+        def shoot(self, built: Any, rays: Rays) -> Hits:
+            told = super().shoot(built, rays)
+            return told if len(built.faces) < 3 else Hits(np.full(len(rays), -1), np.full(len(rays), np.inf))
+
+    vertices = np.array([[x, y, 0.25 * x] for y in range(6) for x in range(6)], dtype=float)
+    faces = np.array([[6 * y + x, 6 * y + x + 1, 6 * y + x + 7] for y in range(5) for x in range(5)])
+    case = Case(vertices, faces, np.array([2.7, 3.2, 9.0, 0.0, 0.0, -1.0, 0.0, np.inf]))
+    small = reduced(Crowded(), case)
+    assert len(small.faces) == 3 and len(small.vertices) <= 9 and small.faces.max() == len(small.vertices) - 1
+
+
 def test_the_exact_answer_is_that_of_the_referee() -> None:
     mesh = raypencil.Mesh([[0, 0, 0], [4, 0, 0], [0, 4, 0], [4, 4, 0]], [[0, 1, 2], [3, 2, 1]])
     one = peers.asked(Referee, mesh, np.array([[1.0, 1, 3, 0, 0, -7]]))
