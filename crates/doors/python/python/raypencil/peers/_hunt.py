@@ -146,7 +146,7 @@ class Found:
         return (
             f"{peer.title} {peer.version()} tells {self.answer()} for this ray; the exact answer is {self.exact}.\n\n"
             f"```{language}\n{self.script}```\n\n"
-            f"The exact answer is by fractions, of the numbers as they stand here. The program {how_rounded(peer)}, and no ray that is"
+            f"The exact answer is by fractions, of the numbers as they stand here. The program {how_rounded(peer)}. No ray that is"
             " moved sideways by up to 16 u S (u: the unit roundoff of that arithmetic; S: the largest coordinate plus the origin's)"
             " has the answer that is told: it is not a matter of rounding.\n"
         )

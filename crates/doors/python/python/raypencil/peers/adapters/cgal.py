@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..._mesh import Mesh
 from .._peer import Built, Hits, Peer, Rays, hits, need
@@ -60,3 +61,8 @@ class Cgal(Peer):
 
     def all(self, mesh: Mesh, rays: Rays) -> list[list[tuple[int, float]]] | None:
         return self.all_of(self.build(mesh), rays)
+
+    def any(self, mesh: Mesh, rays: Rays) -> NDArray[np.bool_] | None:
+        kernel, tree, _ = self.build(mesh)
+        asked = (kernel.Ray_3(kernel.Point_3(*ray[0:3]), kernel.Vector_3(*ray[3:6])) for ray in rays.tolist())
+        return np.array([tree.do_intersect(ray) for ray in asked], dtype=bool)

@@ -79,3 +79,8 @@ class LibiglEmbree(Peer):
         for k, ray in enumerate(rays.astype(np.float32)):
             face[k], t[k], _, _ = built.intersectRay_first(ray[0:3].copy(), ray[3:6].copy())
         return hits(face, t, rays)
+
+    def all(self, mesh: Mesh, rays: Rays) -> list[list[tuple[int, float]]] | None:
+        built = self.build(mesh)
+        found = (built.intersectRay(ray[0:3].copy(), ray[3:6].copy())[0] for ray in rays.astype(np.float32))
+        return [[(hit[0], hit[1]) for hit in one] for one in found]

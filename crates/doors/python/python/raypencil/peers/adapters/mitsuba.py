@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from ..._mesh import Mesh
 from .._peer import Built, Hits, Peer, Rays, hits, need, single
@@ -25,15 +28,23 @@ class MitsubaScalar(Peer):
         parameters.update()
         return mi, mi.load_dict({"type": "scene", "mesh": made})
 
+    def asked(self, mi: Any, rays: Rays) -> list[Any]:
+        """The rays as Mitsuba has them: one for each."""
+        given = single(rays).tolist()
+        return [mi.Ray3f(o=row[:3], d=row[3:6], maxt=row[7], time=0.0, wavelengths=[]) for row in given]
+
     def shoot(self, built: Built, rays: Rays) -> Hits:
         mi, scene = built
         face, t = np.full(len(rays), -1), np.full(len(rays), np.inf)
-        for k, row in enumerate(single(rays)):
-            ray = mi.Ray3f(o=row[:3].tolist(), d=row[3:6].tolist(), maxt=float(row[7]), time=0.0, wavelengths=[])
+        for k, ray in enumerate(self.asked(mi, rays)):
             found = scene.ray_intersect_preliminary(ray)
             if found.is_valid():
                 face[k], t[k] = found.prim_index, found.t
         return hits(face, t, rays)
+
+    def any(self, mesh: Mesh, rays: Rays) -> NDArray[np.bool_] | None:
+        mi, scene = self.build(mesh)
+        return np.array([bool(scene.ray_test(ray)) for ray in self.asked(mi, rays)])
 
 
 class MitsubaLlvm(MitsubaScalar):
@@ -41,10 +52,20 @@ class MitsubaLlvm(MitsubaScalar):
 
     name, title, variant = "mitsuba-llvm", "Mitsuba, llvm_ad_rgb", "llvm_ad_rgb"
 
-    def shoot(self, built: Built, rays: Rays) -> Hits:
-        mi, scene = built
+    def asked(self, mi: Any, rays: Rays) -> list[Any]:
+        """The rays as Mitsuba has them: all in one."""
         parts = [single(rays[:, k]) for k in (0, 1, 2, 3, 4, 5, 7)]
         many = mi.Ray3f(o=mi.Point3f(*parts[:3]), d=mi.Vector3f(*parts[3:6]))
         many.maxt = mi.Float(parts[6])
+        return [many]
+
+    def shoot(self, built: Built, rays: Rays) -> Hits:
+        mi, scene = built
+        (many,) = self.asked(mi, rays)
         found = scene.ray_intersect_preliminary(many, coherent=False)
         return hits(np.array(found.prim_index), np.array(found.t), rays, is_hit=np.array(found.is_valid()))
+
+    def any(self, mesh: Mesh, rays: Rays) -> NDArray[np.bool_] | None:
+        mi, scene = self.build(mesh)
+        (many,) = self.asked(mi, rays)
+        return np.array(scene.ray_test(many), dtype=bool)
