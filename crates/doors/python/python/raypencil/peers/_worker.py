@@ -24,7 +24,7 @@ from ._question import Counts, asked, judged
 Job = dict[str, Any]
 
 #: Seconds after which a process is stopped, and the job that it was at is told as not answered.
-_PATIENCE = 600.0
+_PATIENCE = 1800.0
 
 
 def _family(one: Peer, job: Job) -> Any:
