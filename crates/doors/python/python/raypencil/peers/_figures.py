@@ -14,7 +14,7 @@ from ._measure import Measured
 _FONT = 'font-family="sans-serif" font-size="11"'
 
 #: Width of a value and height of a peer in the first picture.
-_CELL, _ROW, _NAMES, _TOP = 9, 16, 170, 60
+_CELL, _ROW, _NAMES, _TOP = 9, 16, 225, 60
 
 
 def _text(x: float, y: float, words: str, anchor: str = "start", more: str = "") -> str:
@@ -93,6 +93,8 @@ def speed_svg(measured: Sequence[Measured]) -> str:
             at -= 10
         taken.append((x, at))
         fill = "#1a5fb4" if one.peer.registry == "here" else "#a51414"
+        if at != y:
+            parts.append(f'<line x1="{x:.1f}" x2="{x + 5:.1f}" y1="{y:.1f}" y2="{at:.1f}" stroke="{fill}" stroke-width="0.5"/>')
         parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="{fill}"/>')
         parts.append(_text(round(x + 5, 1), round(at + 3, 1), str(number), more=f'font-size="9" fill="{fill}"'))
         parts.append(_text(left + wide + 16, top + 4 + 13 * number, f"{number}  {one.peer.title}"))

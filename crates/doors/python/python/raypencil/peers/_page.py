@@ -150,8 +150,8 @@ def page(measured: Sequence[Measured], missing: Mapping[str, str]) -> str:
         *_table(measured),
         "",
         f"Rays a second: on 8192 faces, in the same run, on a machine of {machine()}; threads as each program takes them by itself,"
-        " and through Python or Node where that is how it is called. It says what a call costs, not what an engine can do. Read the power"
-        " of ten: a run beside other work differs by a factor of two or three.",
+        " and through Python or Node where that is how it is called. It says what a call costs, not what an engine can do. The best of"
+        " five runs; read the power of ten, for other work on the machine makes some rows slower.",
         "",
         f"![Wrong rays against rays a second]({SPEED_FIGURE})",
         "",

@@ -54,7 +54,7 @@ def _law(one: Peer, job: Job) -> Any:
 
 
 def _speed(one: Peer, job: Job) -> Any:
-    """Rays a second on a ground of 8192 faces: ever more rays, until they take a third of a second."""
+    """Rays a second on a ground of 8192 faces: ever more rays, until they take a third of a second; then the best of five."""
     vertices, faces = bumpy(64)
     draw = np.random.default_rng(1)
     origins = draw.uniform(-0.45, 0.45, (int(job["rays"]), 3)) + [0, 0, 1.5]
@@ -68,6 +68,8 @@ def _speed(one: Peer, job: Job) -> Any:
     while True:
         _, seconds = one.timed(built, question.rays[:count])
         if seconds > 0.33 or count >= len(rays):
+            # What else the machine does makes a run longer, never shorter.
+            seconds = min([seconds, *(one.timed(built, question.rays[:count])[1] for _ in range(4))])
             return {"rays": count, "seconds": seconds, "faces": len(faces)}
         count = min(count * 4, len(rays))
 
