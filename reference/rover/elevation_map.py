@@ -170,11 +170,30 @@ class ElevationMap:
         # The range of a cell is that of all of its points, whichever it keeps.
         np.minimum.at(self.lowest, (j, i), points[:, 2])
         np.maximum.at(self.highest, (j, i), points[:, 2])
-        self.settle(jj, ii, points[chosen], variance[chosen], way, sight[chosen])
+        means = points[chosen], variance[chosen], sight[chosen]
+        if self.rules["several"] == "mended":
+            means = self.means(cell, cells, chosen, points, variance, sight)
+        self.settle(jj, ii, *means, way, points[chosen], variance[chosen])
         first = np.full(self.points * self.points, -1)
         first[cell[::-1]] = np.arange(len(cell))[::-1]  # numpy assigns in order: the first of each cell remains
         self.extrapolate(jj, ii, first[cells])
         return found
+
+    def means(self, cell, cells, chosen, points, variance, sight):
+        """Of each cell the mean of its new points that lie on one surface with the highest of them."""
+        of = np.searchsorted(cells, cell)
+        top = points[chosen][of]
+        apart = np.hypot(points[:, 0] - top[:, 0], points[:, 1] - top[:, 1])
+        limit = STEP_DEVIATIONS * np.sqrt(variance + variance[chosen][of]) + STEP_SLOPE * apart
+        on = np.abs(top[:, 2] - points[:, 2]) <= limit
+        count = np.bincount(of[on], minlength=len(cells))
+        mean = np.column_stack([points[chosen][:, axis] + np.bincount(of[on], (points - top)[on, axis], len(cells)) / count
+                                for axis in range(3)])
+        flattest = sight[chosen].copy()
+        for k in np.flatnonzero(on):
+            if sight[k, 2] < flattest[of[k], 2] or np.isnan(flattest[of[k], 2]):
+                flattest[of[k]] = sight[k]
+        return mean, np.bincount(of[on], variance[on], len(cells)) / count, flattest
 
     def contradiction(self, j, i, z):
         """How far new elevations lie outside the range of all that were measured in their cells."""
@@ -186,15 +205,17 @@ class ElevationMap:
             return 0, 0.0, 0.0
         return int(again.sum()), float(outside.mean()), float(outside.max())
 
-    def settle(self, j, i, points, variance, way, sight):
-        """Writes one new point per cell; by the mended rule it is blended with what was measured there."""
+    def settle(self, j, i, points, variance, sight, way, tops, top_variance):
+        """Writes one new point per cell; by the mended rule it is blended with what was measured there. `tops` are the
+        highest new points."""
         new = {"x": points[:, 0], "y": points[:, 1], "elevation": points[:, 2],
                "variance": np.maximum(variance, MIN_VARIANCE), "way": np.full(len(i), way),
                "frame": np.full(len(i), float(self.frame_now)),
                "sight_x": sight[:, 0], "sight_y": sight[:, 1], "sight_slope": sight[:, 2]}
         new = {name: values.copy() for name, values in new.items()}
         met = self.source[j, i] == MEASURED
-        self.keep_tops(j, i, met, new)
+        self.keep_tops(j, i, met, new | {"x": tops[:, 0], "y": tops[:, 1], "elevation": tops[:, 2],
+                                         "variance": np.maximum(top_variance, MIN_VARIANCE)})
         if self.rules["several"] == "mended" and met.any():
             old = {name: getattr(self, name)[j[met], i[met]] for name in new}
             now = {name: values[met] for name, values in new.items()}

@@ -4,6 +4,7 @@ import numpy as np
 
 from elevation_map import MEASURED, PROXIMITY
 
+MAX_CONTINUED_SLOPE = 1.0  # rise over distance; what is steeper is an edge, and does not go on
 SIGHT_LENGTH = 2.0  # m; a line of sight is followed back from its point no farther than this
 LINES = [(1, 0), (0, 1), (1, 1), (1, -1)]  # row, column, and both diagonals: steps (di, dj)
 
@@ -16,19 +17,56 @@ class Shadows:
 
     def __init__(self, elevation_map, max_width):
         measured = (elevation_map.source == MEASURED) | (elevation_map.source == PROXIMITY)
-        z = np.where(measured, elevation_map.elevation, np.nan)
+        x, y, z = highest_points(elevation_map, measured)
         ends = np.full(z.shape, -np.inf)
         for di, dj in LINES:
             step = elevation_map.spacing * np.hypot(di, dj)
             longest = int(np.floor(max_width / step + 1e-9))
             before, first = run_to_measured(measured, z, -di, -dj, longest)
             behind, last = run_to_measured(measured, z, di, dj, longest)
+            peak = np.full(z.shape, -np.inf)
+            # Along rows and columns alone: a diagonal through the corner of a level stone falls on both sides, too.
+            for k in range(1, longest + 1 if di * dj == 0 else 1):
+                for n in range(1, longest + 1):
+                    here = (before == k) & (behind == n)
+                    quartet = [[shifted(values, step * di, step * dj, np.nan) for values in (x, y, z)]
+                               for step in (-k - 1, -k, n, n + 1)]
+                    peak = np.where(here, np.fmax(peak, peak_between(*quartet)[2]), peak)
             bridged = ~measured & (before + behind - 1 <= longest)
-            ends = np.where(bridged, np.maximum(ends, np.maximum(first, last)), ends)
+            ends = np.where(bridged, np.maximum(ends, np.maximum(peak, np.maximum(first, last))), ends)
         hidden = lines_of_sight(elevation_map, measured)
         self.ceiling = np.where(np.isfinite(hidden), hidden, np.nan)
         # The higher end, or what can hide there if that is more.
         self.bridge = np.where(np.isfinite(ends), np.fmax(ends, self.ceiling), np.nan)
+
+
+def highest_points(elevation_map, measured):
+    """The highest point of each measured cell, at its own place; NaN elsewhere."""
+    m = elevation_map
+    jj, ii = np.mgrid[0:m.points, 0:m.points]
+    gx, gy = m.place(ii, jj)
+    own, tall = m.source == MEASURED, (m.source == MEASURED) & np.isfinite(m.top_z)
+    x, y = (np.where(tall, top, np.where(own, value, grid))
+            for top, value, grid in ((m.top_x, m.x, gx), (m.top_y, m.y, gy)))
+    z = np.where(tall, m.top_z, m.elevation)
+    return [np.where(measured, values, np.nan) for values in (x, y, z)]
+
+
+def peak_between(before, near, far, after):
+    """Where the rises that lead up to two points meet: place and height; -infinity where they do not. Each argument is a list
+    of x, y, z."""
+    def rise(foot, top):
+        away = np.hypot(top[0] - foot[0], top[1] - foot[1])
+        return np.where(away > 0, np.minimum((top[2] - foot[2]) / np.where(away > 0, away, 1), MAX_CONTINUED_SLOPE), 0)
+
+    up, down = rise(before, near), rise(after, far)
+    length = np.hypot(far[0] - near[0], far[1] - near[1])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        way = (far[2] - near[2] + down * length) / (up + down)
+        there = (up > 0) & (down > 0) & (way >= 0) & (way <= length) & (length > 0)
+        share = np.where(there, way / length, np.nan)
+    return [near[0] + (far[0] - near[0]) * share, near[1] + (far[1] - near[1]) * share,
+            np.where(there, near[2] + up * way, -np.inf)]
 
 
 def run_to_measured(measured, z, di, dj, longest):

@@ -66,7 +66,7 @@ def obstacle_map(grid, x, y, heading, test):
         for k, (radius, qx, qy) in enumerate(places):
             verdict = test(qx, qy, ux, uy)
             tie |= verdict.near_tie
-            if verdict.reason == "near_limit" and k + 1 < len(places):
+            if verdict.reason in ("near_limit", "may_hide") and k + 1 < len(places):
                 # An obstacle begins at the point before it, if that one is too near a limit to tell.
                 following = test(*places[k + 1][1:], ux, uy)
                 tie |= following.near_tie

@@ -17,6 +17,7 @@ from triangulate import Rig
 from wheel_tests import WheelTests
 
 CENTROID_ROWS, PIXEL_ROWS = 0.1, 1 / np.sqrt(12)  # standard deviation of an edge's row
+ROW_ROUNDING = 1e-9  # pixels
 
 
 @dataclass
@@ -81,7 +82,6 @@ class Rover:
         """Edges and points of a frame in the vehicle's frame, with what the map needs to know of each point."""
         extraction = self.setup["extraction"]
         centroid = extraction["place"] == "centroid"
-        rows = PIXEL_ROWS if extraction["place"] == "pixel" else CENTROID_ROWS
         edges, points, errors, sights, left_out = [], [], [], [], 0
         for exposure in self.exposures(frame):
             image = images.load(self.recording.folder / "images", exposure.stem, self.shape)
@@ -97,6 +97,9 @@ class Rover:
                 place, ok = rig.points(e.beam, e.column, row, centroid)
                 edges.append(edge)
                 points.append(np.column_stack([edge, place])[ok])
+                # The centroid of one lit row is the middle of that pixel, wherever in it the light lies.
+                one_row = centroid & (np.abs(e.row - (e.pixel_row + 0.5)) <= ROW_ROUNDING)
+                rows = np.where(one_row | (extraction["place"] == "pixel"), PIXEL_ROWS, CENTROID_ROWS)
                 error = rig.height_error(e.beam, e.column, e.row, rows, centroid)
                 errors.append(error[ok])
                 sights.append(sight(place[ok], rig, e.beam, rotation))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from elevation_map import MEASURED, PROXIMITY, UNKNOWN
+from gaps import highest_points, peak_between, shifted
 from obstacle_map import CLEAR, Verdict
 
 # Axle, share of the wheelbase ahead of Q, side.
@@ -25,11 +26,13 @@ class Support:
 
 @dataclass
 class Wheel:
-    """By measured ground alone, by it and the ground that the vehicle stood on, by all that may be there; what is missing:
+    """By measured ground alone, by it and the ground that the vehicle stood on, by measured ground without the highest points
+    of cells, by all that may be there; what is missing:
     None, or index j, i; and the first place where it stood and did not measure."""
 
     measured: Support
     supported: Support
+    lowest: Support
     highest: Support
     missing: tuple
     stood: tuple
@@ -51,6 +54,7 @@ class WheelTests:
         self.z = np.where(self.measured, m.elevation, np.nan)
         # The proximity sensor's cells count as without error.
         self.variance = np.where(own, m.variance_now(), 0.0)
+        self.high = highest_points(m, self.measured)
         tall = own & np.isfinite(m.top_z)
         self.top = [np.where(tall, values, np.nan) for values in (m.top_x, m.top_y, m.top_z, m.top_variance_now())]
         if shadows is None:
@@ -98,8 +102,9 @@ class WheelTests:
         offers = [(np.where(inside(a, b), z, np.nan), x, y, a, variance)]
         tx, ty, tz, tv = (values[w] for values in self.top)
         ta, tb = axes(tx, ty)
+        tops, peaks = [], []
         with np.errstate(invalid="ignore"):
-            offers.append((np.where(inside(ta, tb), tz, np.nan), tx, ty, ta, tv))
+            tops.append((np.where(inside(ta, tb), tz, np.nan), tx, ty, ta, tv))
         # The straight lines between neighbouring measured points, cut to the rectangle.
         for di, dj in ((1, 0), (0, 1), (1, 1), (1, -1)):
             height, width = z.shape
@@ -117,16 +122,26 @@ class WheelTests:
                 slope = (z[two] - z[one]) / (a[two] - a[one])
                 touch = (radius * slope / np.sqrt(1 + slope * slope) - a[one]) / (a[two] - a[one])
             touches = ok & (touch >= low) & (touch <= high)
+            if di * dj == 0:
+                quartet = [[shifted(values, step * di, step * dj, np.nan)[w] for values in self.high]
+                           for step in (-1, 0, 1, 2)]
+                px, py, pz = peak_between(*quartet)
+                pa, pb = axes(px, py)
+                with np.errstate(invalid="ignore"):
+                    met = np.isfinite(pz) & inside(pa, pb)
+                peaks.append((np.where(met, pz, np.nan), px, py, pa, np.zeros(pa.shape)))
             for share, may in ((low, ok), (high, ok), (touch, touches)):
                 t = np.where(may, share, 0.0)
                 px, py = x[one] + t * (x[two] - x[one]), y[one] + t * (y[two] - y[one])
                 offers.append((np.where(may, z[one] + t * (z[two] - z[one]), np.nan), px, py, axes(px, py)[0],
                                np.maximum(variance[one], variance[two])))
+        means = offers
+        offers = offers[:1] + tops + offers[1:]
         measured = self.highest_of(offers)
         gx, gy, top = self.grid_x[w], self.grid_y[w], self.wheel_top[w]
         a, b = axes(gx, gy)
         under = inside(a, b)
-        highest = self.highest_of(offers + [(np.where(under, top, np.nan), gx, gy, a, np.zeros(a.shape))])
+        highest = self.highest_of(offers + peaks + [(np.where(under, top, np.nan), gx, gy, a, np.zeros(a.shape))])
         lacks = under & np.isnan(top) & ~self.measured[w]
         missing = None
         if lacks.any():
@@ -135,10 +150,11 @@ class WheelTests:
         if not self.is_on_map(cx, cy, ux, uy, radius, half):
             missing = missing or "beyond"
         on = np.where(under & self.is_stood[w], top, np.nan)
-        supported = self.highest_of(offers + [(on, gx, gy, a, np.zeros(a.shape))])
+        on_stood = [(on, gx, gy, a, np.zeros(a.shape))]
+        supported, lowest = self.highest_of(offers + on_stood), self.highest_of(means + on_stood)
         stood = np.argwhere(~np.isnan(on))
         stood = (stood[0][0] + w[0].start, stood[0][1] + w[1].start) if len(stood) else None
-        return Wheel(measured, supported, highest, missing, stood)
+        return Wheel(measured, supported, lowest, highest, missing, stood)
 
     def is_on_map(self, cx, cy, ux, uy, ahead, aside):
         """Whether all of a rectangle lies on the map."""
@@ -205,6 +221,20 @@ class WheelTests:
             supports = [[wheels[k].measured for k in high], [wheels[k].supported for k in low]]
             return compared(supports, name, high, low, errors, is_signed=True)[0]
 
+        def exceeds_at_most(name, one, two, errors):
+            """Either side with all that may stand under it, the other without: the larger rise counts."""
+            rises = []
+            for high, low in ((one, two), (two, one)):
+                supports = [[wheels[k].highest for k in high], [wheels[k].lowest for k in low]]
+                if all(support is not None for side in supports for support in side):
+                    rises.append((sum(s.hub for s in supports[0]) / len(high) - sum(s.hub for s in supports[1]) / len(low),
+                                  supports, high, low))
+            if not rises:
+                found = compare("highest", name, one, two, errors)
+                return bool(found and found[0])
+            _, supports, high, low = max(rises, key=lambda rise: rise[0])
+            return compared(supports, name, high, low, errors, is_signed=True)[0]
+
         margin = -self.limits["obstacle_margin"]
         for name, one, two in pairs:
             if by_certain(name, one, two, margin):
@@ -222,10 +252,9 @@ class WheelTests:
                         return self.lacking("not_measured", f"{WHEELS[k][0]}_wheel", *wheels[k].stood, tie)
         for name, one, two in pairs:
             # What may stand in gaps may be too high, or the errors may be too large.
-            found = compare("highest", name, one, two, self.limits["clear_margin"])
-            if found and found[0]:
+            if exceeds_at_most(name, one, two, self.limits["clear_margin"]):
                 part = "rear_wheel" if name == "rear" else "front_wheel"
-                hides = compare("highest", name, one, two, 0)[0] and not by_measured(name, one, two, 0)
+                hides = exceeds_at_most(name, one, two, 0) and not by_measured(name, one, two, 0)
                 return Verdict("unknown", "may_hide" if hides else "near_limit", part, (float(qx), float(qy)), tie)
         return self.belly(qx, qy, ux, uy, [wheel.highest.hub for wheel in wheels], tie)
 
@@ -249,10 +278,11 @@ class WheelTests:
             within = (np.abs(a) <= ahead + BORDER) & (np.abs(b) <= aside + BORDER)
             return np.where(within, z - (np.mean(hub) - below + along * a + across * b), np.nan), within
 
-        hit, _ = over(self.x[w], self.y[w], self.z[w])
-        tie |= bool((np.abs(hit) <= NEAR).any())
-        if (hit >= 0).any():
-            return Verdict("obstacle", "belly", near_tie=tie)
+        for x, y, z in ((self.x, self.y, self.z), self.top[:3]):
+            hit, _ = over(x[w], y[w], z[w])
+            tie |= bool((np.abs(hit) <= NEAR).any())
+            if (hit >= 0).any():
+                return Verdict("obstacle", "belly", near_tie=tie)
         may, within = over(self.grid_x[w], self.grid_y[w], self.belly_top[w])
         tie |= bool((np.abs(may) <= NEAR).any())
         lacks = within & np.isnan(self.belly_top[w]) & ~self.measured[w]

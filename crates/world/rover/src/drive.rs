@@ -324,7 +324,6 @@ impl Drive {
             }));
         }
         let plane = SheetPlane::for_location(plan.extraction.place);
-        let row_error = plan.extraction.place.row_error();
         let triangulations: Vec<_> = (0..rig.beams.len())
             .map(|beam| {
                 let triangulation = Triangulation::new(&rig, beam, plane);
@@ -341,6 +340,7 @@ impl Drive {
                 Some(table) => table.at_pixel(edge.i, edge.j),
                 None => triangulation.at_edge(&edge),
             };
+            let row_error = plan.extraction.place.row_error(&edge);
             let standard_error = || triangulation.elevation_error(&edge, row_error).unwrap_or(0.0);
             seen.measured.extend(point.map(|point| MeasuredPoint {
                 step,

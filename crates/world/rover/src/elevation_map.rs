@@ -244,6 +244,16 @@ impl ElevationMap {
         }
     }
 
+    /// Takes over from another map the ground on which its vehicle stood, by the rule
+    /// [`StartRule::Circle`](crate::StartRule): what that rule invents, and no elevation.
+    pub fn stand_as(&mut self, other: &Self) {
+        for point in other.points() {
+            if let Some(elevation) = other.cell(point).stood {
+                self.stand_over(point, elevation);
+            }
+        }
+    }
+
     /// Adds to the distance driven, metres.
     pub fn drive(&mut self, distance: f64) {
         self.odometer += distance;

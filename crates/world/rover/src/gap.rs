@@ -1,6 +1,7 @@
 //! The gap problem: an estimate of the elevation of ground that was not seen. (Paper, §7)
 
 use crate::elevation_map::{ElevationMap, ElevationSource, GridPoint};
+use crate::peak::{highest, peak_between};
 
 /// Rule for narrow gaps, the solution that the paper leaves open: "A more general solution, which we have not yet
 /// implemented, is to allow the vehicle to go over the gaps that are less than one wheel thickness wide. To test if the
@@ -30,23 +31,27 @@ impl GapRule {
     pub fn upper_estimate(&self, shadows: &MapWithShadows, point: GridPoint) -> Option<f64> {
         let map = shadows.map();
         let spacing = map.size().spacing;
-        let mut highest: Option<f64> = None;
+        let mut estimate: Option<f64> = None;
         for (i, j, step) in GAP_DIRECTIONS {
             let max_steps = (self.max_width / (step * spacing) + 1e-9).floor() as i64;
             // The nearest measured point in this direction: the number of others before it, and its elevation.
             let bracket = |sign: i64| {
                 (1..=max_steps).find_map(|n| {
                     let at = GridPoint { i: point.i + sign * n * i, j: point.j + sign * n * j };
-                    is_measured(map, at).then(|| map.elevation(at).map(|z| (n - 1, z))).flatten()
+                    is_measured(map, at).then(|| highest(map, at).map(|top| (n - 1, at, top.z))).flatten()
                 })
             };
-            let (Some((before, near)), Some((beyond, far))) = (bracket(-1), bracket(1)) else { continue };
+            let (Some((before, near_at, near)), Some((beyond, far_at, far))) = (bracket(-1), bracket(1))
+            else {
+                continue;
+            };
             if before + 1 + beyond <= max_steps {
-                let higher = near.max(far);
-                highest = Some(highest.map_or(higher, |top| top.max(higher)));
+                let peak = peak_between(map, near_at, far_at, (i, j)).map(|peak| peak.z);
+                let higher = near.max(far).max(peak.unwrap_or(f64::NEG_INFINITY));
+                estimate = Some(estimate.map_or(higher, |top| top.max(higher)));
             }
         }
-        highest.map(|top| shadows.ceiling(point).map_or(top, |hidden| top.max(hidden)))
+        estimate.map(|top| shadows.ceiling(point).map_or(top, |hidden| top.max(hidden)))
     }
 }
 

@@ -72,6 +72,7 @@ mod navigator_map;
 mod noise_stream;
 mod obstacle_map;
 mod otsu;
+mod peak;
 mod registration;
 mod rig;
 mod route;

@@ -20,7 +20,10 @@ pub struct MapPoint {
 #[derive(Debug, Clone, Copy)]
 struct NewData {
     at: GridPoint,
+    /// The point that stands for the cell's ground: as printed the last one, mended the mean.
     point: MapPoint,
+    /// The highest point; as printed the last one.
+    top: MapPoint,
     /// Lowest and highest elevation, metres.
     range: (f64, f64),
 }
@@ -72,18 +75,18 @@ impl ElevationMap {
         self.update += 1;
         let new = self.one_for_each_cell(points.into_iter().map(Into::into));
         let mut found = Inconsistency::default();
-        for &NewData { at, point, range } in &new {
+        for &NewData { at, point, top, range } in &new {
             let index = self.index(at);
             let before = self.cells[index];
             if let (Rule::Mended, Some((low, high))) = (self.rules.inconsistency, before.measured) {
-                let difference = (low - point.point.z).max(point.point.z - high).max(0.0);
+                let difference = (low - top.point.z).max(top.point.z - high).max(0.0);
                 found.count += 1;
                 found.mean += difference;
                 found.largest = found.largest.max(difference);
             }
             let (low, high) = before.measured.unwrap_or(range);
             let measured = Some((low.min(range.0), high.max(range.1)));
-            self.cells[index] = Cell { measured, ..self.measured_cell(&before, &point) };
+            self.cells[index] = Cell { measured, ..self.measured_cell(&before, &point, &top) };
         }
         found.mean /= f64::from(found.count.max(1));
         match self.rules.extrapolate {
@@ -98,6 +101,7 @@ impl ElevationMap {
         let mut new: Vec<NewData> = Vec::new();
         // Index into `new`, plus one; 0: no new point.
         let mut slots = vec![0_u32; self.cells.len()];
+        let mut all: Vec<(u32, MapPoint)> = Vec::new();
         for point in points {
             if !point.point.is_finite() {
                 continue;
@@ -108,11 +112,13 @@ impl ElevationMap {
             }
             let slot = &mut slots[self.index(at)];
             if *slot == 0 {
-                new.push(NewData { at, point, range: (point.point.z, point.point.z) });
+                new.push(NewData { at, point, top: point, range: (point.point.z, point.point.z) });
                 *slot = new.len() as u32;
+                all.push((*slot - 1, point));
                 continue;
             }
-            let NewData { point: kept, range, .. } = &mut new[*slot as usize - 1];
+            all.push((*slot - 1, point));
+            let NewData { top: kept, range, .. } = &mut new[*slot as usize - 1];
             *range = (range.0.min(point.point.z), range.1.max(point.point.z));
             let replaces = match self.rules.several {
                 Rule::Paper => true,
@@ -123,11 +129,15 @@ impl ElevationMap {
                 *kept = point;
             }
         }
+        match self.rules.several {
+            Rule::Paper => new.iter_mut().for_each(|data| data.point = data.top),
+            Rule::Mended => take_means(&mut new, &all),
+        }
         new
     }
 
     /// A cell that held `before`, with this new point; without the range of its measurements.
-    fn measured_cell(&self, before: &Cell, point: &MapPoint) -> Cell {
+    fn measured_cell(&self, before: &Cell, point: &MapPoint, highest: &MapPoint) -> Cell {
         let z = point.point.z;
         let new = Cell {
             elevation: z,
@@ -145,20 +155,19 @@ impl ElevationMap {
         if self.rules.several == Rule::Paper {
             return new;
         }
-        let own =
-            Top { point: point.point, variance: new.variance, odometer: self.odometer, frame: self.frame };
+        let variance = (highest.standard_error * highest.standard_error).max(MIN_VARIANCE_M2);
+        let own = Top { point: highest.point, variance, odometer: self.odometer, frame: self.frame };
         let new = Cell { top: Some(own), ..new };
         if before.source != ElevationSource::Measured {
             return new;
         }
         let top = match before.top {
-            Some(top) if top.point.z >= z - HEIGHT_ROUNDING_M => Some(top),
+            Some(top) if top.point.z >= highest.point.z - HEIGHT_ROUNDING_M => Some(top),
             _ => Some(own),
         };
         let aged = before.variance + self.ageing_variance(before);
         let rise = new.elevation - before.elevation;
-        let by_slope = MAX_SURFACE_SLOPE * (new.place - before.place).length();
-        if rise.abs() > GATE_DEVIATIONS * (aged + new.variance).sqrt() + by_slope {
+        if !on_one_surface(rise, aged + new.variance, (new.place - before.place).length()) {
             // There is a step in the cell, and its top decides what a wheel meets.
             let kept = if rise > 0.0 { new } else { Cell { update: new.update, ..*before } };
             return Cell { top, ..kept };
@@ -249,6 +258,38 @@ impl ElevationMap {
             self.contains(at).then(|| self.index(at))
         });
         on_map.into_iter().flatten()
+    }
+}
+
+/// Whether two points lie on one surface: their elevations differ by no more than their errors and a slope account for.
+fn on_one_surface(rise: f64, variance: f64, apart: f64) -> bool {
+    rise.abs() <= GATE_DEVIATIONS * variance.sqrt() + MAX_SURFACE_SLOPE * apart
+}
+
+/// Gives each cell the mean of its new points that lie on one surface with the highest of them, of their places too: on a plane it
+/// stays on the plane. The highest of several points would lie above the ground by their errors, and a vehicle that finds its
+/// elevation by such a map climbs with every frame.
+fn take_means(new: &mut [NewData], all: &[(u32, MapPoint)]) {
+    let mut sums = vec![(0_u32, DVec3::ZERO, 0.0); new.len()];
+    new.iter_mut().for_each(|data| data.point = data.top);
+    for (slot, MapPoint { point, standard_error, sight }) in all {
+        let data = &mut new[*slot as usize];
+        let top = data.top;
+        let variance = standard_error * standard_error + top.standard_error * top.standard_error;
+        if on_one_surface(top.point.z - point.z, variance, (top.point - *point).truncate().length()) {
+            let (count, sum, variances) = &mut sums[*slot as usize];
+            *count += 1;
+            // From the highest: far from the origin a sum of coordinates would lose digits.
+            *sum += *point - top.point;
+            *variances += standard_error * standard_error;
+            data.point.sight = flatter(data.point.sight, *sight);
+        }
+    }
+    for (data, (count, sum, variances)) in new.iter_mut().zip(sums) {
+        let count = f64::from(count.max(1));
+        data.point.point = data.top.point + sum / count;
+        // Points of a stripe share the errors of their rows and of the vehicle: their mean is no better than one of them.
+        data.point.standard_error = (variances / count).sqrt();
     }
 }
 

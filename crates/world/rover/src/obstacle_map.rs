@@ -204,8 +204,9 @@ impl ObstacleMap {
                     }
                     Traversability::Unknown(missing) => {
                         // CHOICE: an obstacle rises over several radii, so the point before a certain one is often too
-                        // near a limit to tell. Such an obstacle begins there. The clear way is the same either way.
-                        if missing.reason == MissingReason::NearLimit
+                        // near a limit to tell, by the errors of the points or by what may stand between them. Such an
+                        // obstacle begins there. The clear way is the same either way.
+                        if matches!(missing.reason, MissingReason::NearLimit | MissingReason::MayHide)
                             && let Some((_, Traversability::Obstacle(test))) = points.next()
                         {
                             return SectorEnd { failed: Some(test), ..end(radius, Label::Obstacle) };

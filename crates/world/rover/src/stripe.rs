@@ -40,14 +40,20 @@ impl StripeLocation {
     /// Standard error of a measured row, pixels.
     ///
     /// The middle of a pixel stands for an edge anywhere in it: a uniform distribution of width 1 has the standard
-    /// deviation 1 / sqrt(12). CHOICE for the others: a tenth, which the table of `docs/evidence/results.md` bears out.
-    pub fn row_error(self) -> f64 {
+    /// deviation 1 / sqrt(12). So does the centroid of a stripe that lit one row alone: it is the middle of that pixel, wherever in
+    /// it the light lies. CHOICE for the others: a tenth, which the table of `docs/evidence/results.md` bears out.
+    pub fn row_error(self, edge: &EdgePoint) -> f64 {
+        let one_row = (edge.row - (f64::from(edge.j) + 0.5)).abs() <= ROW_ROUNDING;
         match self {
             Self::Pixel => (1.0_f64 / 12.0).sqrt(),
+            Self::Centroid if one_row => (1.0_f64 / 12.0).sqrt(),
             Self::SubPixel | Self::Centroid => 0.1,
         }
     }
 }
+
+/// A centroid this near to the middle of its pixel is that middle, pixels: its quotient is rounded.
+const ROW_ROUNDING: f64 = 1e-9;
 
 /// Settings of the stripe extraction.
 #[derive(Debug, Clone, Copy, PartialEq)]

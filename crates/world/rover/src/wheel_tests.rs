@@ -13,6 +13,7 @@ use glam::{DVec2, DVec3};
 
 use crate::elevation_map::{ElevationMap, ElevationSource, GridPoint};
 use crate::gap::{MapWithShadows, is_measured};
+use crate::peak::peak_between;
 use crate::traversability::{
     Missing, MissingReason, RISE_ROUNDING_M, Traversability, TraversabilityRules, TraversabilityTest,
     VehiclePart,
@@ -51,6 +52,9 @@ struct Hub {
 struct WheelOnMap {
     measured: Option<Hub>,
     supported: Option<Hub>,
+    /// The same by the means of the cells alone, without the highest point of any frame: those lie above the ground by their
+    /// errors.
+    lowest: Option<Hub>,
     highest: Option<Hub>,
     missing: Option<Missing>,
     /// First grid point under the wheel with ground that the vehicle stood on, and that was never measured.
@@ -58,6 +62,11 @@ struct WheelOnMap {
 }
 
 impl WheelOnMap {
+    /// The hubs that every point of the cells' ground carries.
+    fn all(&mut self) -> [&mut Option<Hub>; 4] {
+        [&mut self.measured, &mut self.supported, &mut self.lowest, &mut self.highest]
+    }
+
     /// Whether all ground under the wheel is measured or bounded.
     fn is_known(&self) -> bool {
         self.missing.is_none()
@@ -233,7 +242,11 @@ impl TraversabilityRules {
             match ground.under_belly(point) {
                 Known::Measured(sample, _) => {
                     // Points within the rectangle are enough: the belly is far wider than a cell.
-                    if belly.within(sample.truncate()).is_some_and(|at| sample.z >= underside(at)) {
+                    let top = map.cell(point).top.map(|top| top.point);
+                    let hits = |sample: DVec3| {
+                        belly.within(sample.truncate()).is_some_and(|at| sample.z >= underside(at))
+                    };
+                    if hits(sample) || top.is_some_and(hits) {
                         return Traversability::Obstacle(TraversabilityTest::Belly);
                     }
                 }
@@ -264,8 +277,14 @@ struct Ground<'a> {
 impl Ground<'_> {
     /// A wheel at rest in its rectangle.
     fn wheel(&self, part: VehiclePart, rectangle: &Rectangle) -> WheelOnMap {
-        let mut wheel =
-            WheelOnMap { measured: None, supported: None, highest: None, missing: None, stood: None };
+        let mut wheel = WheelOnMap {
+            measured: None,
+            supported: None,
+            lowest: None,
+            highest: None,
+            missing: None,
+            stood: None,
+        };
         let radius = rectangle.half_length;
         let rest_on = |point: DVec3, variance: f64, kept: &mut Option<Hub>| {
             let Some(at) = rectangle.within(point.truncate()) else { return };
@@ -278,7 +297,7 @@ impl Ground<'_> {
         for point in rectangle.grid_points(self.map) {
             match self.under_wheel(part, point) {
                 Known::Measured(sample, variance) => {
-                    for hub in [&mut wheel.measured, &mut wheel.supported, &mut wheel.highest] {
+                    for hub in wheel.all() {
                         rest_on(sample, variance, hub);
                     }
                     if rectangle.within(sample.truncate()).is_some() {
@@ -300,15 +319,19 @@ impl Ground<'_> {
                         if let Some(other) = self.map.sample(beside) {
                             let variance = variance.max(self.variance(beside));
                             for on_edge in rectangle.highest_on_edge(sample, other, radius) {
-                                for hub in [&mut wheel.measured, &mut wheel.supported, &mut wheel.highest] {
+                                for hub in wheel.all() {
                                     rest_on(on_edge, variance, hub);
                                 }
                             }
+                        }
+                        if let Some(peak) = peak_between(self.map, point, beside, (i, j)) {
+                            rest_on(peak, variance, &mut wheel.highest);
                         }
                     }
                 }
                 Known::Stood(top) => {
                     rest_on(top, 0.0, &mut wheel.supported);
+                    rest_on(top, 0.0, &mut wheel.lowest);
                     rest_on(top, 0.0, &mut wheel.highest);
                     if rectangle.within(top.truncate()).is_some() {
                         let (place, reason) = (top.truncate(), MissingReason::NotMeasured);
@@ -326,7 +349,7 @@ impl Ground<'_> {
         // Which of several points carries the wheel can be a matter of rounding, and must not decide the variance.
         if inside.1 > 0 {
             let mean = inside.0 / f64::from(inside.1);
-            for hub in [&mut wheel.measured, &mut wheel.supported, &mut wheel.highest].into_iter().flatten() {
+            for hub in wheel.all().into_iter().flatten() {
                 hub.variance = mean;
             }
         }
@@ -393,7 +416,7 @@ struct Rises {
     certain: Option<Rise>,
     /// Where the lower side stands on such ground.
     stood: Option<Missing>,
-    /// With all that may be there.
+    /// The larger rise that may be there: one side with all that may stand under it, the other without.
     highest: Option<Rise>,
 }
 
@@ -414,7 +437,7 @@ impl Rises {
             Some((a.height - b.height, (a.variance + b.variance).sqrt()))
         };
         let (measured, supported): (Part, Part) = (|wheel| wheel.measured, |wheel| wheel.supported);
-        let highest: Part = |wheel| wheel.highest;
+        let (highest, lowest): (Part, Part) = (|wheel| wheel.highest, |wheel| wheel.lowest);
         let is_known = |wheels: [&WheelOnMap; N]| wheels.iter().all(|wheel| wheel.is_known());
         let by_measured =
             rise(measured, measured).filter(|&(height, _)| is_known(if height > 0.0 { b } else { a }));
@@ -430,7 +453,12 @@ impl Rises {
             // Below 0 the lower side may be the higher one.
             certain: certain.map(|(height, standard_error)| Rise { height, standard_error }),
             stood: lower.iter().find_map(|wheel| wheel.stood),
-            highest: rise(highest, highest).map(upwards),
+            highest: [rise(highest, lowest), rise(lowest, highest).map(|(height, error)| (-height, error))]
+                .into_iter()
+                .flatten()
+                .reduce(|a, b| if b.0 > a.0 { b } else { a })
+                .or_else(|| rise(highest, highest))
+                .map(upwards),
         }
     }
 }

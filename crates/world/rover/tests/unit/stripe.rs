@@ -173,3 +173,20 @@ fn a_share_is_one_of_the_brightest_pixel() {
     // A dark image has no stripes.
     assert!(extraction.edges(&Image::filled(6, 8, 0.0)).is_empty());
 }
+
+#[test]
+fn a_centroid_of_one_row_says_no_more_than_its_pixel() {
+    let pixel = (1.0_f64 / 12.0).sqrt();
+    // One lit row; two, of which the lower one is brighter.
+    let mut image = Image::filled(2, 8, 0.0);
+    image.set(0, 3, 700.0);
+    image.set(1, 3, 100.0);
+    image.set(1, 4, 300.0);
+    let extraction = Extraction { place: StripeLocation::Centroid, ..Extraction::thresholding(50.0) };
+    let edges = extraction.edges(&image);
+    assert_eq!(edges.iter().map(|edge| edge.row).collect::<Vec<_>>(), [3.5, 4.25]);
+    let errors = |place: StripeLocation| edges.iter().map(|edge| place.row_error(edge)).collect::<Vec<_>>();
+    assert_eq!(errors(StripeLocation::Centroid), [pixel, 0.1]);
+    assert_eq!(errors(StripeLocation::SubPixel), [0.1, 0.1]);
+    assert_eq!(errors(StripeLocation::Pixel), [pixel, pixel]);
+}

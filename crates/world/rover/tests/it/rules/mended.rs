@@ -99,9 +99,9 @@ fn printed_rules_put_back_spoil_the_map_of_a_plane() {
     let slope = DVec2::new(0.1, 0.05);
     let bound = slope.length() * 0.05 * 2.0_f64.sqrt();
     // The elevation of one cell belongs to a point up to half a diagonal away, and what it spoils is read again 3.3 m on.
-    let elevation = MapRules { elevation: Rule::Paper, ..MapRules::MENDED };
+    let elevation = MapRules { elevation: Rule::Paper, several: Rule::Paper, ..MapRules::MENDED };
     let [short, long] = [10.0, 100.0].map(|way| drive_over_plane(slope, way, elevation).1);
-    assert!(short > 1e-3 && long > 2.0 * short && long > bound, "{short} and {long}");
+    assert!(short > 1e-3 && long > 1.5 * short && long > bound, "{short} and {long}");
     // A new stripe overwrites what earlier ones measured beside it.
     let extrapolate = MapRules { extrapolate: Rule::Paper, ..MapRules::MENDED };
     let (mapper, _) = drive_over_plane(slope, 10.0, extrapolate);
@@ -574,7 +574,7 @@ fn by_driving_over_a_steep_plane_it_is_clear_to_the_end() {
 
 #[test]
 fn a_map_at_its_grid_points_is_the_plane_without_bias() {
-    // The map keeps the highest point of a cell, on a slope of 0.3 up to 15 mm above the grid point. At the grid points
+    // The map keeps the mean of a cell's points, which lie beside the grid point: on a slope of 0.3 by up to 15 mm. At the grid points
     // themselves, guesses beside the last stripe among them, it is the plane.
     for slope in [DVec2::new(0.0, 0.30), DVec2::new(0.3, 0.1), DVec2::new(-0.25, 0.2)] {
         let (mapper, _) = drive_over_plane(slope, 3.0, MapRules::MENDED);
@@ -588,7 +588,7 @@ fn a_map_at_its_grid_points_is_the_plane_without_bias() {
         };
         let kept = |point| map.elevation(point);
         let carried = |point| map.estimate(point).map(|estimate| estimate.elevation);
-        assert!(mean(&kept, ElevationSource::Measured).0 > 2e-3);
+        assert!(mean(&kept, ElevationSource::Measured).1 > 2e-3);
         for source in [ElevationSource::Measured, ElevationSource::Extrapolated] {
             let (bias, largest) = mean(&carried, source);
             // A few guesses at the ends of stripes have too few points around for a plane, and stay as they are.
@@ -628,9 +628,9 @@ fn the_top_of_a_stone_is_not_lowered_by_its_flank() {
     let mean = map.elevation(GridPoint { i: 10, j: 5 }).unwrap();
     assert!((0.335..0.345).contains(&mean), "{mean}");
     assert_eq!(judge(&rules, &map), Traversability::Obstacle(TraversabilityTest::Front));
-    // Without that one frame it may pass.
+    // Without that one frame, and level with what is around it, it may pass.
     let mut map =
-        measured(|i, j| Some(if (9..=11).contains(&i) && (4..=6).contains(&j) { 0.33 } else { 0.0 }));
+        measured(|i, j| Some(if (9..=11).contains(&i) && (4..=6).contains(&j) { 0.34 } else { 0.0 }));
     for _ in 0..10 {
         map.insert([DVec3::new(1.0, 0.5, 0.34)]);
     }

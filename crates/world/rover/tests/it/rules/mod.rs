@@ -2,6 +2,7 @@
 
 use super::common;
 
+mod between_points;
 mod elevation_map;
 mod localisation;
 mod mapper;
