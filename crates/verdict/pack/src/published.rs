@@ -73,17 +73,17 @@ pub const PUBLISHED: [PublishedPack; 6] = [
     PublishedPack {
         name: "pyramids",
         version: "2.0.0",
-        sha256: "b336e0f22b68035a612939484b427637f739863ee0f0f84c62faa076f929ecf6",
+        sha256: "1a3eab29ccca8f419c39a150fb24c5b6960107c270f40f108a598b8ceb3aed46",
     },
     PublishedPack {
         name: "facets",
         version: "2.0.0",
-        sha256: "1ac268e7b897873dcf18c7ec0293ef2c69cd41573185470cde40f8942c9f891d",
+        sha256: "57a578fc29cec25021ae888a25e0bea4f7aa839a800168e9f63635496ad85478",
     },
     PublishedPack {
         name: "hard",
         version: "2.0.0",
-        sha256: "65fe5831e073415b72577c6a7507d1a58ae7eb3e1784030de6c1f2602f83afac",
+        sha256: "eb26a9238f7807d5facf96769d7a7783b1a368b02326e88b591997e3fa38a99f",
     },
     PublishedPack {
         name: "pyramids",

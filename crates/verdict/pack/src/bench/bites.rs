@@ -142,7 +142,7 @@ fn limits() -> Vec<(Limit, f64)> {
         Limit::OccluderAtPlane,
         Limit::OccluderBeforePlane,
     ] {
-        add(limit, &[1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11]);
+        add(limit, &[1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-7, 1e-8, 1e-9, 4e-10, 1e-10, 1e-11]);
     }
     for limit in [Limit::OccluderBeside, Limit::OccluderEdgeOnWay] {
         add(limit, &[1e-2, 1e-3, 1e-5, 1e-7, 1e-8]);
@@ -526,13 +526,16 @@ impl<'a> Tube<'a> {
         // Away from the point the tubes are narrower.
         let radius = self.radius() * u.min(1.0);
         let centre = camera + way * u;
-        let plate = if u > 0.5 {
-            // Along the pencil, which so does not meet it: a face right before or behind the point would be one of two faces whose
-            // order single precision cannot tell.
-            let along = self.q.normalize();
-            let other = along.cross(way).normalize();
+        // Near the point the pencil meets the plate right behind it, from its front: whichever of the two a program in single
+        // precision meets first, it meets one. A back there would have to be told from a front that is as near as rounding.
+        let plate = if u > 1.0 {
+            showing(Side::Front, self.around(centre, radius, camera), self.origin)
+        } else if u > 0.5 {
+            // Between the pencil and the way: it cuts the way before the point, and the pencil behind it.
+            let along = (self.q.normalize() + way.normalize()).normalize();
+            let other = self.q.cross(way).normalize();
             let at = |x: f64, y: f64| centre + radius * (x * along + y * other);
-            [at(-1.0, -0.7), at(1.05, -0.6), at(-0.1, 1.1)]
+            showing(Side::Front, [at(-1.0, -0.7), at(1.05, -0.6), at(-0.1, 1.1)], self.origin)
         } else {
             showing(Side::Back, self.around(centre, radius, camera), self.origin)
         };

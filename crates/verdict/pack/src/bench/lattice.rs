@@ -12,8 +12,9 @@ use crate::bench::faces::Triangle;
 /// Two corners have (2 k + 1)^6 moves in a range of some 6 k steps; tuned, so that thirty of them and more are near enough.
 const REACHES: [(f64, i32); 3] = [(0.1, 2), (1e-3, 5), (0.0, 9)];
 
-/// Pairs of moves that are evaluated, the nearest by the slopes first. Slopes change over a move, by a part in 1e5 or so.
-const TRIED: usize = 400;
+/// Of the second corner's moves those that are evaluated with each of the first's: so many to either side of the one that is best
+/// by the slopes. Slopes change over a move, by a part in a thousand or so, so that the best pair is not the one which they tell.
+const BESIDE: usize = 3;
 
 /// Share of the wanted value by which the one that is found may differ. The decade counts, not the digit.
 const MAX_MISS: f64 = 0.25;
@@ -71,29 +72,22 @@ pub(super) fn tuned(
         all
     };
     let (of_first, of_second) = (moves(first), moves(second));
-    let mut pairs: Vec<Pair> = of_first
-        .iter()
-        .map(|(gain, by)| {
-            let missing = wanted - here - gain;
-            let place = of_second.partition_point(|(other, _)| *other < missing).min(of_second.len() - 1);
-            let (other, and) = of_second[place];
-            ((missing - other).abs(), *by, and)
-        })
-        .collect();
-    let nearer = |a: &Pair, b: &Pair| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-    if pairs.len() > TRIED {
-        pairs.select_nth_unstable_by(TRIED, nearer);
-        pairs.truncate(TRIED);
-    }
-    pairs.sort_unstable_by(nearer);
     let miss = |triangle: &Triangle| (quantity(triangle) - wanted).abs();
-    let tried = pairs.iter().map(|(_, by, and)| moved(&moved(&at, first, *by), second, *and));
-    let best = tried.min_by(|a, b| miss(a).total_cmp(&miss(b)))?;
+    let mut best = (miss(&at), at);
+    for (gain, by) in &of_first {
+        let from = moved(&at, first, *by);
+        let place = of_second.partition_point(|(other, _)| *other < wanted - here - gain);
+        let near = place.saturating_sub(BESIDE)..(place + BESIDE).min(of_second.len());
+        for (_, and) in &of_second[near] {
+            let tried = moved(&from, second, *and);
+            if miss(&tried) < best.0 {
+                best = (miss(&tried), tried);
+            }
+        }
+    }
+    let best = best.1;
     (miss(&best) <= MAX_MISS * wanted.abs()).then_some(best)
 }
-
-/// What is missing after two moves, by the slopes, and the moves.
-type Pair = (f64, [i32; 3], [i32; 3]);
 
 fn axes() -> [[i32; 3]; 3] {
     [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
