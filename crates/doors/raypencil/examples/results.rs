@@ -46,6 +46,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
          numbers are the same on any machine.\n",
         names.join(" ")
     );
+    // `just stamp docs/evidence/results.md COMMAND` fills it in.
+    let last = names.last().map_or("", String::as_str);
+    println!("<!-- stands on\nmade_by = \"just results {last}\"\nrenderers = \"\"\n-->\n");
     for (scene, name) in scenes.iter().zip(&names) {
         page(scene, name)?;
     }

@@ -54,6 +54,7 @@ mod counts;
 mod differences;
 mod document;
 mod error;
+mod exact_map;
 mod explorer;
 mod facts;
 mod figures;

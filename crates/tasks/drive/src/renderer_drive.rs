@@ -9,6 +9,7 @@ use raypencil_scene::{Image, Pose, Renderer, SceneError, Stage};
 use raypencil_sensor::FixedPattern;
 use raypencil_terrain::HeightIndex;
 
+use crate::exact_map::ExactMap;
 use crate::job::DriveJob;
 use crate::recorded_exposure::{MAX_LIT_PIXELS, RecordedExposure};
 use crate::sun::Sun;
@@ -26,6 +27,8 @@ pub(crate) struct RendererDrive<'a> {
     pattern: Option<FixedPattern>,
     /// What the stripes swept, if the drive is to be held to the truth.
     swept: Option<SweptGround>,
+    /// The map that a rover with exact eyes would have of it; likewise.
+    exact: Option<ExactMap>,
     /// Whether the last exposure belonged to a scan.
     was_scan: bool,
     /// Time of the sensor, steps 7 and 8.
@@ -60,6 +63,7 @@ impl<'a> RendererDrive<'a> {
             exposures: 0,
             pattern: None,
             swept: None,
+            exact: None,
             was_scan: false,
             exposing: Duration::ZERO,
             stepping: Duration::ZERO,
@@ -76,12 +80,25 @@ impl<'a> RendererDrive<'a> {
     pub(crate) fn keeping_swept(self) -> Self {
         let DrivePlan { map, route, .. } = &self.job.plan;
         let swept = SweptGround::new(*map, route.start);
-        Self { swept: Some(swept), renderer: self.renderer.keeping_lit(), ..self }
+        let exact = ExactMap::new(&self.job.plan);
+        Self { swept: Some(swept), exact: Some(exact), renderer: self.renderer.keeping_lit(), ..self }
     }
 
     /// What the stripes swept so far; `None` if it is not kept.
     pub(crate) fn swept(&self) -> Option<&SweptGround> {
         self.swept.as_ref()
+    }
+
+    /// Adds to the map of exact points what the stripes swept so far.
+    pub(crate) fn fill_exact_map(&mut self) {
+        if let (Some(exact), Some(swept)) = (&mut self.exact, &self.swept) {
+            exact.fill(swept, self.drive.ground());
+        }
+    }
+
+    /// Map of the exact points so far; `None` if it is not kept.
+    pub(crate) fn exact_map(&self) -> Option<&ElevationMap> {
+        self.exact.as_ref().map(ExactMap::map)
     }
 
     /// Next frame; `None` at the end of the route. `record`: keep records of its exposures. `look` sees every image that the
@@ -97,7 +114,7 @@ impl<'a> RendererDrive<'a> {
         let (mut recorded, mut images, mut room) = (Vec::new(), Vec::new(), MAX_LIT_PIXELS);
         let (job, renderer) = (self.job, &self.renderer);
         let (exposures, exposing, pattern) = (&mut self.exposures, &mut self.exposing, &mut self.pattern);
-        let (swept, was_scan) = (&mut self.swept, &mut self.was_scan);
+        let (swept, exact, was_scan) = (&mut self.swept, &mut self.exact, &mut self.was_scan);
         let (heights, clears) =
             (Arc::clone(self.drive.ground()), job.plan.scans.is_some_and(|scans| scans.clear_map));
         let mut camera_pipeline = |exposure: Exposure, flux: Image<f64>| {
@@ -105,8 +122,15 @@ impl<'a> RendererDrive<'a> {
             if let (Some(swept), Some((scene, lit))) = (swept.as_mut(), renderer.take_lit()) {
                 let camera = scene.camera().scene_from_sensor.position + scene.mesh().origin();
                 swept.recentre(camera.truncate(), &heights);
-                if exposure.step == Some(0) && clears {
+                let forgets = exposure.step == Some(0) && clears;
+                if forgets {
                     swept.clear();
+                }
+                if let Some(exact) = exact.as_mut() {
+                    if forgets {
+                        exact.clear();
+                    }
+                    exact.add(&scene, &lit);
                 }
                 let is_scan = exposure.step.is_some();
                 swept.add(&scene, &lit, exposure.step == Some(0) || is_scan != *was_scan);
@@ -138,6 +162,9 @@ impl<'a> RendererDrive<'a> {
         let start = Instant::now();
         let frame = self.drive.step(renderer, &mut camera_pipeline)?;
         self.stepping += start.elapsed();
+        if let (Some(frame), Some(exact), Some(mapper)) = (&frame, &mut self.exact, self.drive.mapper()) {
+            exact.end_frame(mapper.map(), self.drive.ground(), frame.stance.position.truncate());
+        }
         Ok(frame.map(|frame| ExposedFrame { frame, recorded, images }))
     }
 

@@ -7,7 +7,9 @@ use std::time::{Duration, Instant};
 use raypencil_chassis::GroundFaces;
 use raypencil_files::FolderError;
 use raypencil_report::Drawing;
-use raypencil_rover::{Detection, DriveFrame, ElevationMap, LabelledVector, ObstacleMap, StripeExtractor};
+use raypencil_rover::{
+    Detection, DriveFrame, DrivePlan, ElevationMap, LabelledVector, ObstacleMap, StripeExtractor,
+};
 use raypencil_scene::{Pose, Renderer, Scene, SceneError, Silent, Stage};
 use raypencil_survey::{Warning, Whereabouts, plan as survey_plan};
 
@@ -21,7 +23,7 @@ use crate::maps::ply::MarkedPoint;
 use crate::point_errors::PointErrors;
 use crate::recording::{RecordContents, Recording};
 use crate::renderer_drive::{ExposedFrame, RendererDrive};
-use crate::sector_truth::{SectorTruth, TrueGround};
+use crate::sector_truth::{SectorTruth, TrueGround, first_obstacles};
 use crate::sun::Sun;
 use crate::warnings::{at_the_start, nothing_measured, start_too_steep};
 
@@ -81,6 +83,9 @@ pub struct DriveRun {
     pub obstacles: Option<(u64, ObstacleMap, Vec<LabelledVector>)>,
     /// All obstacle maps against what the vehicle can pass on the true ground.
     pub truth: SectorTruth,
+    /// The same of a rover with exact eyes, which knows where it stands: its map holds the true points that stripes lit and the
+    /// camera saw, and its rules are the drive's own. No better image and no better sensor would find more.
+    pub upper_bound: SectorTruth,
     /// Edge points against the true ground.
     pub point_errors: PointErrors,
     /// Number of edge points of all frames.
@@ -189,7 +194,8 @@ pub fn drive_with(
     let mut history = DriveHistory::new(planned);
     let start = Instant::now();
     let faces = GroundFaces::new(&job.mesh);
-    let (mut truth, mut judging) = (SectorTruth::default(), start.elapsed());
+    let (mut truth, mut upper_bound, mut judging) =
+        (SectorTruth::default(), SectorTruth::default(), start.elapsed());
     let mut last: Option<(ExposedFrame, Pose)> = None;
     let (mut comparing, mut drawing) = (Duration::ZERO, Duration::ZERO);
 
@@ -216,10 +222,18 @@ pub fn drive_with(
         let frame = &mut exposed.frame;
         let believed = frame.believed;
         let start = Instant::now();
-        let judged = match (&frame.obstacles, first.swept()) {
-            (Some((map, _)), Some(swept)) => {
-                let ground = TrueGround { faces: &faces, heights: first.ground(), swept };
-                truth.add(&map.sectors, first.map(), &ground, &job.plan, &frame.stance.pose())
+        if frame.obstacles.is_some() {
+            first.fill_exact_map();
+        }
+        let judged = match (&frame.obstacles, first.swept(), first.exact_map()) {
+            (Some((map, _)), Some(swept), Some(exact)) => {
+                let ground = TrueGround { heights: first.ground(), swept };
+                let stance = frame.stance.pose();
+                let firsts = first_obstacles(&faces, &job.plan, &stance);
+                let DrivePlan { vehicle, rules, grid, .. } = &job.plan;
+                let bound = ObstacleMap::extract(exact, vehicle, rules, grid, &stance);
+                upper_bound.add(&bound.sectors, exact, &ground, &job.plan, &stance, &firsts);
+                truth.add(&map.sectors, first.map(), &ground, &job.plan, &stance, &firsts)
             }
             _ => Vec::new(),
         };
@@ -300,6 +314,7 @@ pub fn drive_with(
         believed: first.believed(),
         obstacles,
         truth,
+        upper_bound,
         point_errors,
         edge_points,
         points,

@@ -113,7 +113,6 @@ pub struct SectorTruth {
 
 /// The true ground, ready to be asked.
 pub(crate) struct TrueGround<'a> {
-    pub faces: &'a GroundFaces,
     pub heights: &'a HeightIndex,
     pub swept: &'a SweptGround,
 }
@@ -125,7 +124,7 @@ pub(crate) fn chassis(vehicle: &Vehicle) -> Chassis {
 }
 
 /// First obstacle of a sector on the true ground.
-enum First {
+pub(crate) enum First {
     Obstacle {
         radius: f64,
         obstruction: Obstruction,
@@ -146,22 +145,22 @@ impl SectorTruth {
         ground: &TrueGround,
         plan: &DrivePlan,
         global_from_vehicle: &Pose,
+        firsts: &[First],
     ) -> Vec<JudgedSector> {
         self.maps += 1;
         let mut dense: Option<[ElevationMap; 2]> = None;
         let mut judged = Vec::with_capacity(sectors.len());
-        for (index, end) in sectors.iter().enumerate() {
+        for ((index, end), first) in sectors.iter().enumerate().zip(firsts) {
             self.sectors += 1;
-            let first = first_obstacle(index as u32, ground.faces, plan, global_from_vehicle);
             let finds = |maps: &mut Option<[ElevationMap; 2]>| {
                 maps.get_or_insert_with(|| true_maps(map, ground.heights, global_from_vehicle)).clone()
             };
             let judgement =
-                self.add_sector(index as u32, end, &first, ground, plan, global_from_vehicle, &mut || {
+                self.add_sector(index as u32, end, first, ground, plan, global_from_vehicle, &mut || {
                     finds(&mut dense)
                 });
             let true_radius = match first {
-                First::Obstacle { radius, .. } => Some(radius),
+                First::Obstacle { radius, .. } => Some(*radius),
                 First::Edge { .. } | First::None => None,
             };
             judged.push(JudgedSector { judgement, true_radius });
@@ -301,6 +300,31 @@ impl SectorTruth {
         }
         sentences
     }
+
+    /// The sentence of an upper bound: what exact eyes would have found.
+    pub(crate) fn sentence_of_bound(&self) -> String {
+        format!(
+            "exact eyes would end {} at a true obstacle, {} at a false one, and pass {}; clear way {:.2} m",
+            count(self.found),
+            count(self.false_obstacle),
+            count(self.passed()),
+            self.mean_clear_way(),
+        )
+    }
+
+    /// Mean distance up to which a sector was truly clear and called so, metres.
+    pub fn mean_clear_way(&self) -> f64 {
+        self.clear_mm as f64 / 1000.0 / self.sectors.max(1) as f64
+    }
+}
+
+/// First place of each sector at which the vehicle cannot stand.
+pub(crate) fn first_obstacles(
+    faces: &GroundFaces,
+    plan: &DrivePlan,
+    global_from_vehicle: &Pose,
+) -> Vec<First> {
+    (0..plan.grid.sectors).map(|sector| first_obstacle(sector, faces, plan, global_from_vehicle)).collect()
 }
 
 /// First place of a sector at which the vehicle cannot stand.

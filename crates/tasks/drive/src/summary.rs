@@ -64,7 +64,7 @@ pub(crate) fn drive_data(job: &DriveJob, run: &DriveRun) -> Map<String, Value> {
         "obstacle_map_frame": run.obstacles.as_ref().map(|(frame, _, _)| frame),
         "sectors": labels,
         "largest_elevation_error_m": elevation_error(run),
-        "truth": truth(&run.truth),
+        "truth": truth(&run.truth, &run.upper_bound),
         "passes": run.passes(),
         "differences": run.differences.as_ref().map(differences),
         "whereabouts": run.whereabouts,
@@ -84,7 +84,7 @@ fn elevation_error(run: &DriveRun) -> f64 {
     errors.fold(0.0, f64::max)
 }
 
-fn truth(truth: &SectorTruth) -> Value {
+fn truth(truth: &SectorTruth, bound: &SectorTruth) -> Value {
     json!({
         "obstacle_maps": truth.maps,
         "sectors": truth.sectors,
@@ -112,6 +112,13 @@ fn truth(truth: &SectorTruth) -> Value {
         "clear": truth.clear,
         "off_ground": truth.off_ground,
         "clear_way_m": truth.clear_mm as f64 / 1000.0,
+        "upper_bound": {
+            "found": bound.found,
+            "passed": bound.passed(),
+            "false_obstacle": bound.false_obstacle,
+            "clear": bound.clear,
+            "clear_way_m": bound.clear_mm as f64 / 1000.0,
+        },
     })
 }
 

@@ -43,6 +43,8 @@ pub(crate) fn main_results(task: Task) -> &'static [&'static str] {
             "truth.missed_share",
             "truth.false_share",
             "truth.clear_way_mean_m",
+            "truth.upper_bound.found_share",
+            "truth.upper_bound.clear_way_mean_m",
             "driven_m",
         ],
     }
@@ -73,6 +75,12 @@ pub(crate) fn drive_results(summary: &Value) -> Vec<Named> {
         ("truth.false_share", share(number("truth.false_obstacle"), sectors)),
         // How far a sector was truly clear and called so, on average.
         ("truth.clear_way_mean_m", share(clear_way, sectors)),
+        // The same of a rover with exact eyes.
+        (
+            "truth.upper_bound.found_share",
+            share(number("truth.upper_bound.found"), number("truth.with_obstacle")),
+        ),
+        ("truth.upper_bound.clear_way_mean_m", share(number("truth.upper_bound.clear_way_m"), sectors)),
     ];
     results.extend(shares.map(|(name, value)| (name.to_string(), value)));
     results
@@ -159,7 +167,8 @@ mod tests {
             "format": "raypencil-drive", "stages": [{ "seconds": 1.5 }], "frames": 7, "warnings": ["a", "b"],
             "truth": {
                 "sectors": 50, "with_obstacle": 40, "found": 30, "passed": 12, "false_obstacle": 5, "clear_way_m": 100.0,
-                "missed": { "by_errors": 4, "by_spacing": 5, "by_rule": 1 }
+                "missed": { "by_errors": 4, "by_spacing": 5, "by_rule": 1 },
+                "upper_bound": { "found": 36, "clear_way_m": 125.0 }
             }
         });
         let results = drive_results(&summary);
@@ -173,6 +182,8 @@ mod tests {
         assert_eq!(of("truth.missed_share"), Some(json!(0.25)));
         assert_eq!(of("truth.false_share"), Some(json!(0.1)));
         assert_eq!(of("truth.clear_way_mean_m"), Some(json!(2.0)));
+        assert_eq!(of("truth.upper_bound.found_share"), Some(json!(0.9)));
+        assert_eq!(of("truth.upper_bound.clear_way_mean_m"), Some(json!(2.5)));
         // No times, and nothing of what was set.
         assert!(results.iter().all(|(name, _)| !name.contains("seconds") && !name.starts_with("format")));
         // A ground without obstacles has no share of them.

@@ -51,14 +51,23 @@ fn a_row_names_each_count_in_its_column() {
         clear_mm: 58_250_000,
         ..SectorTruth::default()
     };
+    let missed = Missed { by_rule: 2, ..Missed::default() };
+    let bound = SectorTruth {
+        sectors: 20_000,
+        found: 4_000,
+        missed,
+        false_obstacle: 1,
+        clear_mm: 60_000_000,
+        ..SectorTruth::default()
+    };
     // 15 of 4,000 are 0.375 %; 9 of 20,000 are 0.045 %. 58,250 m in 20,000 sectors are 2.9125 m each.
     assert_eq!(
-        sector_table::row(&truth, "pyramids", "mended"),
-        "| pyramids | mended | 20,000 | 3,985 | 27 | 15 = 12 + 2 + 1 (0.4 %) | 3 + 4 + 5 | 9 (< 0.1 %) | 37 + 40 + 50 | 60 | 2.91 m |"
+        sector_table::row(&truth, &bound, "pyramids", "mended"),
+        "| pyramids | mended | 20,000 | 3,985 | 27 | 15 = 12 + 2 + 1 (0.4 %) | 3 + 4 + 5 | 9 (< 0.1 %) | 37 + 40 + 50 | 60 | 2.91 m | 4,000, 2, 1, 3.00 m |"
     );
     assert_eq!(
         sector_table::HEAD.lines().map(|line| line.matches('|').count()).collect::<Vec<_>>(),
-        [12, 12]
+        [13, 13]
     );
 }
 
@@ -66,7 +75,8 @@ fn a_row_names_each_count_in_its_column() {
 fn none_is_0_percent_and_only_all_is_100() {
     let share = |found, by_rule| {
         let missed = Missed { by_rule, ..Missed::default() };
-        let row = sector_table::row(&SectorTruth { found, missed, ..SectorTruth::default() }, "", "");
+        let truth = SectorTruth { found, missed, ..SectorTruth::default() };
+        let row = sector_table::row(&truth, &SectorTruth::default(), "", "");
         row.split(['(', ')']).nth(1).unwrap().to_string()
     };
     assert_eq!(

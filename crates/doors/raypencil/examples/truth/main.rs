@@ -5,8 +5,13 @@
 //! ```sh
 //! cargo run --release -p raypencil --features examples --example truth            # all tables
 //! cargo run --release -p raypencil --features examples --example truth rules      # one: rules, noise, pointing
+//! cargo run --release -p raypencil --features examples --example truth rules facets "as printed"      # one row
 //! ```
+//!
+//! Rows are kept in `out/truth` as long as this program stays the same: an interrupted run goes on, and rows may be made in any
+//! order. With `KEPT=1` the rows that are there already are printed, and no other.
 
+mod kept_rows;
 mod noise_level;
 mod pointing;
 mod sector_table;
@@ -19,6 +24,7 @@ use raypencil::harness::contender;
 use raypencil::io::{Overrides, load};
 use raypencil::rover::{DrivePlan, MapRules, MapSize, Rule, ScanRule, StartRule, TraversabilityRules};
 
+use kept_rows::KeptRows;
 use noise_level::NoiseLevel;
 use pointing::pointing_table;
 
@@ -62,7 +68,9 @@ const SETTINGS: [(&str, Change); 2] = [
 fn main() -> Result<(), Failure> {
     let asked = std::env::args().nth(1);
     let only = std::env::args().nth(2);
+    let only_row = std::env::args().nth(3);
     let wants = |table: &str| asked.as_deref().is_none_or(|asked| asked == table);
+    let kept = KeptRows::of_this_program()?;
     let mut jobs = Vec::new();
     for (name, scene, on_to) in DRIVES {
         if only.as_deref().is_some_and(|only| only != scene && only != name) {
@@ -74,9 +82,18 @@ fn main() -> Result<(), Failure> {
         jobs.push((name, NoiseLevel::None.applied(job)));
     }
     let row = |name: &str, settings: &str, job: &DriveJob, change: Change| -> Result<(), Failure> {
-        let mut job = job.clone();
-        change(&mut job.plan);
-        println!("{}", sector_table::row(&truth(&job)?, name, settings));
+        if only_row.as_deref().is_some_and(|only| only != settings) {
+            return Ok(());
+        }
+        let made = kept.row(&format!("{name}, {settings}"), || {
+            let mut job = job.clone();
+            change(&mut job.plan);
+            let (truth, bound) = truth(&job)?;
+            Ok(sector_table::row(&truth, &bound, name, settings))
+        })?;
+        if let Some(made) = made {
+            println!("{made}");
+        }
         Ok(())
     };
     if wants("rules") {
@@ -109,9 +126,9 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Truth of a drive with `scanline`. `tracer` gives the same labels (`docs/guide/drive.md`).
-fn truth(job: &DriveJob) -> Result<SectorTruth, Failure> {
+/// Truth of a drive with `scanline`, and its upper bound. `tracer` gives the same labels (`docs/guide/drive.md`).
+fn truth(job: &DriveJob) -> Result<(SectorTruth, SectorTruth), Failure> {
     let renderer = contender("scanline").ok_or("there is no renderer scanline")?.renderer;
     let run = drive(job, &[renderer.as_ref()], &Silent)?;
-    Ok(run.truth)
+    Ok((run.truth, run.upper_bound))
 }

@@ -5,14 +5,14 @@ use raypencil::report::count;
 
 /// Head of the table.
 pub const HEAD: &str = "\
-| drive | | sectors | found | passed | missed: errors, spacing, rule | not seen: hidden, not swept, outside | false | unknown: not measured, may hide, near limit | clear | clear way |
-| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |";
+| drive | | sectors | found | passed | missed: errors, spacing, rule | not seen: hidden, not swept, outside | false | unknown: not measured, may hide, near limit | clear | clear way | exact eyes: found, passed, false, clear way |
+| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |";
 
-/// Row of the table: the drive, the settings that were changed, and the counts.
-pub fn row(truth: &SectorTruth, drive: &str, settings: &str) -> String {
+/// Row of the table: the drive, the settings that were changed, the counts, and those of the upper bound.
+pub fn row(truth: &SectorTruth, bound: &SectorTruth, drive: &str, settings: &str) -> String {
     let SectorTruth { missed, not_found, .. } = truth;
     format!(
-        "| {drive} | {settings} | {} | {} | {} | {} = {} + {} + {} ({}) | {} + {} + {} | {} ({}) | {} + {} + {} | {} | {:.2} m |",
+        "| {drive} | {settings} | {} | {} | {} | {} = {} + {} + {} ({}) | {} + {} + {} | {} ({}) | {} + {} + {} | {} | {:.2} m | {}, {}, {}, {:.2} m |",
         count(truth.sectors),
         count(truth.found),
         count(truth.passed()),
@@ -30,7 +30,11 @@ pub fn row(truth: &SectorTruth, drive: &str, settings: &str) -> String {
         count(truth.unknown_may_hide),
         count(truth.unknown_near_limit),
         count(truth.clear),
-        truth.clear_mm as f64 / 1000.0 / truth.sectors.max(1) as f64,
+        truth.mean_clear_way(),
+        count(bound.found),
+        count(bound.passed()),
+        count(bound.false_obstacle),
+        bound.mean_clear_way(),
     )
 }
 

@@ -4,6 +4,7 @@ use raypencil_scene::{Camera, Lens, Mesh};
 
 use super::*;
 use crate::common::mesh;
+use crate::exact_map::ExactMap;
 
 /// Ground at 0 up to x = 3 m and at 0.75 m from there to 9 m, where it ends. The step is a wall.
 fn step() -> std::sync::Arc<Mesh> {
@@ -61,9 +62,10 @@ fn counted(x: f64, radius: f64, label: Label, is_seen: bool) -> SectorTruth {
     }
     let map = ElevationMap::new(plan.map, DVec2::new(x, 0.0));
     let pose = Attitude::default().at(DVec3::new(x, 0.0, 0.0));
-    let ground = TrueGround { faces: &faces, heights: &heights, swept: &swept };
+    let ground = TrueGround { heights: &heights, swept: &swept };
     let mut truth = SectorTruth::default();
-    let judged = truth.add(&[end(radius, label)], &map, &ground, &plan, &pose);
+    let firsts = first_obstacles(&faces, &plan, &pose);
+    let judged = truth.add(&[end(radius, label)], &map, &ground, &plan, &pose, &firsts);
     // The judgement of the sector says what its counts say.
     let counted = match judged[0].judgement {
         Judgement::Found => truth.found,
@@ -124,6 +126,13 @@ fn clear_beyond_it_by_more_than_a_step_is_missed_if_stripes_swept_it() {
     assert!(said[1].starts_with("1 pass a true obstacle: 0 miss one"), "{said:?}");
     assert!(said[2].ends_with("not seen: hidden 0, not swept 1, outside 0"), "{said:?}");
     assert_eq!(within.sentences().len(), 2);
+    // Clear up to 2.6 m truly; the bound's sentence has all its counts.
+    assert_eq!(unseen.mean_clear_way(), 2.6);
+    let bound = unseen.sentence_of_bound();
+    assert_eq!(
+        bound,
+        "exact eyes would end 0 at a true obstacle, 0 at a false one, and pass 1; clear way 2.60 m"
+    );
 }
 
 #[test]
@@ -135,6 +144,30 @@ fn clear_ground_is_clear_and_ground_that_ends_is_not_judged() {
     assert_eq!((off.off_ground, off.clear), (1, 0));
     let before = counted(5.0, 4.0, Label::Unknown, true);
     assert_eq!((before.off_ground, before.unknown_not_measured), (0, 1));
+}
+
+#[test]
+fn exact_eyes_know_the_true_ground_of_what_was_swept_and_nothing_else() {
+    let (mesh, plan) = (step(), plan());
+    let heights = HeightIndex::new(&mesh);
+    let mut swept = SweptGround::new(plan.map, DVec2::ZERO);
+    swept.recentre(DVec2::ZERO, &heights);
+    // A stripe along y on the upper ground, at x = 4 m.
+    for j in -20..=20 {
+        swept.see(DVec3::new(4.0, 0.1 * f64::from(j), 0.75));
+    }
+    let mut exact = ExactMap::new(&plan);
+    exact.fill(&swept, &heights);
+    let at = |x: f64| exact.map().sample(exact.map().nearest(DVec2::new(x, 0.0)));
+    // The mean of a cell's points is its middle, and cells beside count as seen with it; those beside these are guesses.
+    assert!((at(4.0).unwrap() - DVec3::new(4.0, 0.0, 0.75)).length() < 1e-12);
+    assert_eq!((at(4.1).map(|sample| sample.z), at(3.7), at(4.3)), (Some(0.75), None, None));
+    // A scan forgets it, and what was swept before is not added again.
+    swept.clear();
+    exact.clear();
+    exact.end_frame(&ElevationMap::new(plan.map, DVec2::ZERO), &heights, DVec2::ZERO);
+    exact.fill(&swept, &heights);
+    assert!(exact.map().points().all(|point| exact.map().elevation(point).is_none()));
 }
 
 #[test]

@@ -3,8 +3,7 @@
 use glam::{DVec2, DVec3};
 use raypencil_rover::{
     Attitude, ElevationMap, ErrorMargins, GridPoint, LocalisationReading, MapRules, MapSize, MapWithShadows,
-    Mapper, Missing, MissingReason, StripePoint, Traversability, TraversabilityRules, TraversabilityTest,
-    Vehicle,
+    Mapper, Missing, MissingReason, StripePoint, Traversability, TraversabilityRules, Vehicle,
 };
 
 /// Measured cells where `z` gives an elevation.
