@@ -39,17 +39,18 @@ same-bits:
     cargo build --release --bin raypencil
     .ci/same_bits.sh target/unoptimised/raypencil target/release/raypencil
 
-# The study of docs/designs.md: 150 drives, half an hour on two cores
+# The study of docs/designs.md: 12 drives with a scan at the start; goes on where it was interrupted
 designs:
-    cargo run --release --bin raypencil -- sweep data/designs/rover.toml --list data/designs/runs.csv \
-        --set terrain.generate.preset=smooth,viking1,pathfinder,crater_field,crevassed,worst --set drive.rules.start=circle --do drive -o out/designs \
+    cargo run --release --bin raypencil -- sweep data/designs/rover.toml --list data/designs/pitch.csv \
+        --set terrain.generate.preset=pathfinder,crevassed --set drive.scans=true --set drive.scan_steps=26 --do drive -o out/designs \
         --chart truth.found_share,beam.0.pitch_down_deg,terrain.generate.preset \
-        --chart truth.clear_way_mean_m,beam.0.pitch_down_deg,terrain.generate.preset \
-        --chart truth.found_share,beam.thickness_mm,terrain.generate.preset \
-        --chart truth.found_share,beam.power_w,terrain.generate.preset \
-        --chart truth.found_share,drive.attitude_noise_deg,terrain.generate.preset \
-        --chart truth.found_share,drive.electronics.read_noise_e,terrain.generate.preset \
-        --chart truth.false_share,drive.electronics.read_noise_e,terrain.generate.preset
+        --chart truth.upper_bound.found_share,beam.0.pitch_down_deg,terrain.generate.preset
+
+# Thickness, power, noise and pitch, one at a time on all presets, ten seeds each: days; no page shows it yet
+designs-wide:
+    cargo run --release --bin raypencil -- sweep data/designs/rover.toml --list data/designs/runs.csv \
+        --set terrain.generate.preset=smooth,viking1,pathfinder,crater_field,crevassed,worst --set terrain.generate.seed=1:10:1 \
+        --set drive.scans=true --set drive.scan_steps=26 --do drive -o out/designs-wide
 
 # The Python package into a fresh environment; its tests and its types
 python:
@@ -80,6 +81,14 @@ speed MESH="":
     cargo build --release -p raypencil --features examples --example speed
     python3 reference/speed/speed.py target/release/examples/speed {{ if MESH == "" { "" } else { "--mesh " + quote(MESH) } }} -o docs/speed.md
 
+# Which tables and figures of the documents are older than the rules that they show; a test fails on these
+stale:
+    cargo run -p raypencil-tests --features examples --example stale
+
+# After a table was made again: its stamp in PAGE, of the command MADE_BY, gets the fingerprints of now
+stamp PAGE MADE_BY:
+    cargo run -p raypencil-tests --features examples --example stale -- {{ quote(PAGE) }} {{ quote(MADE_BY) }}
+
 # The detection of each injected fault, and the smallest scene that reveals it: docs/evidence/injected-faults.md
 injected-faults:
     cargo run --release -p raypencil-tests --features examples --example injected_faults > docs/evidence/injected-faults.md
@@ -97,6 +106,11 @@ report-figures:
     {{ chromium }} --window-size=1280,1380 --screenshot=docs/figures/disagreement.png "file://$PWD/out/figures/checked/report.html#beam-0/117,3/visible.V"
     target/release/raypencil validate pyramids --with scanline-paper,tracer --thickness 80 -o out/figures/paper
     {{ chromium }} --window-size=1280,1480 --screenshot=docs/figures/report.png "file://$PWD/out/figures/paper/report.html"
+
+# Figures 11 to 16 of the paper, by the rules as printed: out/figures/pyramids and out/figures/facets (docs/theory/paper.md)
+figures:
+    cargo run --release --bin raypencil -- drive pyramids --as-printed --set drive.obstacles_every_frames=25 -o out/figures/pyramids
+    cargo run --release --bin raypencil -- drive facets --as-printed --set drive.obstacles_every_frames=25 -o out/figures/facets
 
 # Times of the cold build, of rebuilds and of the tests: docs/evidence/build-times.md. An hour on two cores with nothing beside it
 build-times:

@@ -14,6 +14,7 @@
 //!   `docs/evidence/injected-faults.md`.
 //! * [`planted`]: faults planted in the sources of products, listed in `docs/evidence/shared-faults.md`.
 //! * [`malformed`]: malformed files for every reader, listed in `docs/evidence/malformed-inputs.md`.
+//! * [`stands_on`]: what the tables and figures of the documents stand on, and the stamps that say so.
 //! * [`reproducers`]: what a failing property leaves behind. [`fixtures`]: small validations for reports.
 //!   [`schema`]: JSON documents against their schemas.
 //!
@@ -46,6 +47,7 @@ pub mod quadrature;
 pub mod reproducers;
 pub mod schema;
 pub mod single;
+pub mod stands_on;
 
 pub use agreement::agreement;
 pub use meshes::{remeshed, unindexed};

@@ -7,7 +7,7 @@ use std::path::{Component, Path, PathBuf};
 use super::source::root;
 
 /// The Markdown files below a folder, without what builds leave and what is hidden.
-fn pages(folder: &Path, found: &mut Vec<PathBuf>) {
+pub(super) fn pages(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
         let name = path.file_name().expect("a name").to_string_lossy().into_owned();

@@ -11,6 +11,7 @@ mod nouns;
 mod release;
 mod scene_items;
 mod source;
+mod stamps;
 mod unsafe_code;
 
 pub(crate) use source::crates;
