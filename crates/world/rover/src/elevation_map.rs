@@ -313,6 +313,11 @@ impl ElevationMap {
     }
 }
 
+/// Whether a grid point's elevation is a measurement, by a stripe or by the proximity sensor.
+pub(crate) fn is_measured(map: &ElevationMap, point: GridPoint) -> bool {
+    matches!(map.source(point), ElevationSource::Measured | ElevationSource::Proximity)
+}
+
 impl MapSize {
     /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {

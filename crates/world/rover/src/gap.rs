@@ -1,6 +1,6 @@
 //! The gap problem: an estimate of the elevation of ground that was not seen. (Paper, §7)
 
-use crate::elevation_map::{ElevationMap, ElevationSource, GridPoint};
+use crate::elevation_map::{ElevationMap, ElevationSource, GridPoint, is_measured};
 use crate::peak::{highest, peak_between};
 
 /// Rule for narrow gaps, the solution that the paper leaves open: "A more general solution, which we have not yet
@@ -53,11 +53,6 @@ impl GapRule {
         }
         estimate.map(|top| shadows.ceiling(point).map_or(top, |hidden| top.max(hidden)))
     }
-}
-
-/// Whether a grid point's elevation is a measurement, by a stripe or by the proximity sensor.
-pub(crate) fn is_measured(map: &ElevationMap, point: GridPoint) -> bool {
-    matches!(map.source(point), ElevationSource::Measured | ElevationSource::Proximity)
 }
 
 /// Farthest that a shadow is followed, metres. CHOICE: behind a rock of half a metre, seen from 2 m up, it is shorter

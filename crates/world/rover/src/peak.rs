@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 
-use crate::elevation_map::{ElevationMap, GridPoint};
-use crate::gap::is_measured;
+use crate::elevation_map::{ElevationMap, GridPoint, is_measured};
 
 /// Steepest rise that is continued beyond a measured point, rise over distance. CHOICE: 45 degrees. What is steeper is an
 /// edge, and an edge does not go on.

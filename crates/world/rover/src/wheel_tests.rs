@@ -11,8 +11,8 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::elevation_map::{ElevationMap, ElevationSource, GridPoint};
-use crate::gap::{MapWithShadows, is_measured};
+use crate::elevation_map::{ElevationMap, ElevationSource, GridPoint, is_measured};
+use crate::gap::MapWithShadows;
 use crate::peak::peak_between;
 use crate::traversability::{
     Missing, MissingReason, RISE_ROUNDING_M, Traversability, TraversabilityRules, TraversabilityTest,
