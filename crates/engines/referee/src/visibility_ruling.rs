@@ -44,6 +44,9 @@ const TRIED_DISPLACEMENTS: [[f64; 2]; 8] =
 /// not excused. CHOICE: it keeps the faces few that are asked for.
 const MAX_SLIP: f64 = 1.0 / 64.0;
 
+/// The least step past an edge, as a share of the line of sight: some dozen roundings of the `f64` in which that is tried.
+const LEAST_STEP: f64 = 1.0 / (1_u64 << 46) as f64;
+
 impl Referee<'_> {
     /// The ruling on a renderer's answer about the point where pencil (i, j), displaced by `by`, meets the plane of
     /// `face`; `None` if there is no such pencil or face.
@@ -209,7 +212,8 @@ impl Referee<'_> {
             }
             bundle.max_range
         });
-        let past = |across: DVec3| across + across.normalize_or_zero() * rounded.position;
+        let step = rounded.position.max(bundle.max_range * LEAST_STEP);
+        let past = |across: DVec3| across + across.normalize_or_zero() * step;
         near.iter().filter_map(|other| rounded.uncertain_edge(other)).any(|across| {
             let moved = rounded.moved(past(across));
             !around.iter().any(|other| moved.meets(other))

@@ -338,3 +338,45 @@ fn a_face_is_told_from_the_point_as_well_as_its_plane_is_known() {
     assert_eq!(rule_with(lid, 1.01 * off, 0.0), Ruling::Rounding(Displacement::ZERO));
     assert_eq!(rule_with(screen, 1.01 * off, 0.0), Ruling::Wrong);
 }
+
+/// The way from the wall at (0, 0, 2) to the camera at (1, 0, 0) passes (1/2, 0, 1). An edge beside it there may seem to be on the other
+/// side as far as the hit's error shows across the way: at half of it, half of the error times the sine between pencil and way.
+#[test]
+fn an_edge_beside_the_way_may_seem_to_be_on_it() {
+    let plate = |y: f32, to: f32| [[0.25, y, 1.0], [0.75, y, 1.0], [0.5, to, 1.0]];
+    let rule_with = |occluders: &[[[f32; 3]; 3]], depth: f64, visible: bool| {
+        let faces = [&[WALL][..], occluders].concat();
+        let scene = Setting { faces, ..Setting::of(FluxModel::Radiometric) }.scene();
+        let tolerance = Tolerance { lateral: 0.0, depth, position: 0.0, unit_roundoff: 0.0 };
+        let pixel = Some(Pixel { i: 0, j: 32 });
+        let ruling = Referee::new(&scene).rule_visibility(
+            0,
+            0,
+            0,
+            Displacement::ZERO,
+            FaceId(0),
+            visible,
+            pixel,
+            tolerance,
+        );
+        ruling.expect("a pencil").visible
+    };
+    let off = 1.0 / 64.0;
+    // The error of which the edge's distance is all that shows.
+    let error = 2.0 * 5.0_f64.sqrt() * off;
+    let excused = Ruling::Rounding(Displacement::ZERO);
+    for (share, expected) in [(0.9, excused), (1.1, Ruling::Wrong)] {
+        // Beside the plate the point is seen, behind its margin it is not.
+        let beside = plate(off as f32, 0.25);
+        assert_eq!(rule_with(&[beside], error / share, true), Ruling::Exact);
+        assert_eq!(rule_with(&[beside], error / share, false), expected, "{share}");
+        let around = plate(off as f32, -0.25);
+        assert_eq!(rule_with(&[around], error / share, false), Ruling::Exact);
+        assert_eq!(rule_with(&[around], error / share, true), expected, "{share}");
+    }
+    // Two plates that share the edge: past the one the way meets the other.
+    let near = off as f32;
+    let [left, right] = [plate(near, 0.25), plate(near, -0.25)];
+    assert_eq!(rule_with(&[right], 1.1 * error, true), excused);
+    assert_eq!(rule_with(&[left, right], 1.1 * error, true), Ruling::Wrong);
+}
