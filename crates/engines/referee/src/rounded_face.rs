@@ -81,10 +81,15 @@ impl RoundedFace {
     }
 }
 
-/// How far an edge may seem displaced, metres across a line that meets the face's plane at an angle with this sine, to a program
-/// with this unit roundoff that forms the point on the plane first. `size` is S.
-pub fn edge_slip(aspect: f64, sine: f64, size: f64, unit_roundoff: f64) -> f64 {
-    (2.0 * NORMAL_ROUNDINGS * aspect + QUOTIENT_ROUNDINGS) * unit_roundoff * size * sine
+/// How far an edge may seem displaced, metres, square to it and to a line that passes it, to a program with this unit roundoff that
+/// forms the point on the plane first. The face, whose normal is `normal`, seems to slip in the plane of incidence alone: an edge that
+/// runs in this plane, as that of a plank seen along its length, stays where it is. `size` is S.
+pub fn edge_slip(aspect: f64, normal: DVec3, edge: DVec3, line: DVec3, size: f64, unit_roundoff: f64) -> f64 {
+    let across = |v: DVec3| v - line * (v.dot(line) / line.length_squared());
+    // Across the line the normal is as long as the sine of the angle of incidence, and shows where the face slips to.
+    let slip = across(normal) / normal.length();
+    let square = line.cross(edge).normalize_or_zero();
+    (2.0 * NORMAL_ROUNDINGS * aspect + QUOTIENT_ROUNDINGS) * unit_roundoff * size * slip.dot(square).abs()
 }
 
 /// The cosine up to which a face of this aspect is edge-on for a program with this unit roundoff.

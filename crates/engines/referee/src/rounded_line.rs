@@ -52,18 +52,20 @@ impl RoundedLine {
         let [point, centre] = self.ends;
         let way = centre - point;
         let corners = face.corners();
-        let nearest = (0..3)
-            .map(|k| self.nearest(corners[k], corners[(k + 1) % 3]))
-            .min_by(|a, b| a.across.length_squared().total_cmp(&b.across.length_squared()))?;
         let n = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-        let sine = n.cross(way).length() / (n.length() * way.length());
-        let size = point.length().max(centre.length()) + way.length() + face.longest_edge();
-        let slip = edge_slip(aspect(corners), sine, size, self.unit_roundoff);
-        let error = self.position + self.hit * (1.0 - nearest.share).clamp(0.0, 1.0) + slip;
-        let beyond = error / way.length();
-        let is_on_way = nearest.share >= -beyond && nearest.share <= 1.0 - self.image_plane + beyond;
-        // Not a number where the face is too thin for f64: then its edges are anywhere.
-        (is_on_way && !(nearest.across.length() > error)).then_some(nearest.across)
+        let (kappa, longest) = (aspect(corners), face.longest_edge());
+        let size = point.length().max(centre.length()) + way.length() + longest;
+        let uncertain = (0..3).filter_map(|k| {
+            let (a, b) = (corners[k], corners[(k + 1) % 3]);
+            let nearest = self.nearest(a, b);
+            let slip = edge_slip(kappa, n, b - a, way, size, self.unit_roundoff);
+            let error = self.position + self.hit * (1.0 - nearest.share).clamp(0.0, 1.0) + slip;
+            let beyond = error / way.length();
+            let is_on_way = nearest.share >= -beyond && nearest.share <= 1.0 - self.image_plane + beyond;
+            // Not a number where the face is too thin for f64: then its edges are anywhere.
+            (is_on_way && !(nearest.across.length() > error)).then_some(nearest.across)
+        });
+        uncertain.min_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))
     }
 
     /// Where the line passes nearest to an edge.

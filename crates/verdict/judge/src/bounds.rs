@@ -135,6 +135,7 @@ pub(crate) struct FaceShape {
     aspect: f64,
     /// L, metres.
     longest_edge: f64,
+    corners: [DVec3; 3],
 }
 
 impl FaceShape {
@@ -148,7 +149,27 @@ impl FaceShape {
         let n_length = n.length();
         let aspect = aspect([a, b, c]);
         let longest_edge = e1.length().max(e2.length()).max((c - b).length());
-        Self { n, n_length, aspect, longest_edge }
+        Self { n, n_length, aspect, longest_edge, corners: [a, b, c] }
+    }
+
+    /// How far beside this face a ray may be said to meet it, or within it to miss it, metres: every program's roundings of a
+    /// direction, and the slip of an edge that the ray passes no farther, for one that forms the point on the plane first.
+    pub(crate) fn lateral(&self, ray: &Ray, range: f64, precision: Precision) -> f64 {
+        let u = precision.unit_roundoff;
+        let scale = range + self.longest_edge + ray.origin.length();
+        let of_direction = DIRECTION_ROUNDINGS * u * scale;
+        let allowed = (0..3).filter_map(|k| {
+            let (a, edge) = (self.corners[k], self.corners[(k + 1) % 3] - self.corners[k]);
+            let across =
+                |v: DVec3| v - ray.direction * (v.dot(ray.direction) / ray.direction.length_squared());
+            // Seen along the ray, the point of the edge that is nearest to it.
+            let (from, along) = (across(a - ray.origin), across(edge));
+            let share = (-from.dot(along) / along.length_squared()).clamp(0.0, 1.0);
+            let distance = (from + along * share).length();
+            let slip = edge_slip(self.aspect, self.n, edge, ray.direction, scale, u);
+            (!(distance > of_direction + slip)).then_some(of_direction + slip)
+        });
+        allowed.fold(of_direction, f64::max)
     }
 
     /// With what the ray adds.
@@ -175,15 +196,6 @@ pub(crate) struct MetFace {
 }
 
 impl MetFace {
-    /// How far beside this face a ray may be said to meet it, or within it to miss it, metres: every program's roundings of a
-    /// direction, and the slip of one that forms the point on the plane first.
-    pub(crate) fn lateral(&self, range: f64, precision: Precision) -> f64 {
-        let u = precision.unit_roundoff;
-        let scale = range + self.longest_edge + self.origin;
-        let sine = (1.0 - self.cosine * self.cosine).max(0.0).sqrt();
-        DIRECTION_ROUNDINGS * u * scale + edge_slip(self.aspect, sine, scale, u)
-    }
-
     /// The bounds for a hit at `range` metres.
     #[inline]
     pub(crate) fn bounds(&self, range: f64, precision: Precision) -> HitBounds {

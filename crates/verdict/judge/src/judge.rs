@@ -237,7 +237,7 @@ impl<'s> Judge<'s> {
         if !range.is_finite() {
             return None;
         }
-        let slip = FaceShape::of(self.scene.mesh(), face).met_by(&ray).lateral(range, precision);
+        let slip = FaceShape::of(self.scene.mesh(), face).lateral(&ray, range, precision);
         Some(self.cells(place.sensor, &ray, slip, range))
     }
 

@@ -70,7 +70,11 @@ fn the_errors_of_a_face_by_hand() {
     let face = Face { id: FaceId(0), corners: triangle(6.0, false) };
     for u in UNIT_ROUNDOFFS {
         assert_close(plane_error(&face, 7.0, u), (5.0 * KAPPA + 6.0) * u * 7.0);
-        assert_close(edge_slip(KAPPA, 0.5, 7.0, u), (10.0 * KAPPA + 27.0) * u * 7.0 * 0.5);
+        // The plane of incidence is that of x and z, and the sine 0.6: an edge along y slips by all of it, one along x not at all.
+        let (normal, line) = (2.0 * DVec3::Z, DVec3::new(3.0, 0.0, 4.0));
+        let slip = |edge: DVec3| edge_slip(KAPPA, normal, edge, line, 7.0, u);
+        assert_close(slip(DVec3::Y), (10.0 * KAPPA + 27.0) * u * 7.0 * 0.6);
+        assert!(slip(DVec3::X) < 1e-12 * u);
     }
 }
 
