@@ -4,7 +4,7 @@
 //! A renderer's ray may be displaced by delta, and its point may be wrong by epsilon. Then it may give the right
 //! answer of some ray displaced by at most delta, and it may take a face that passes within epsilon of the point to lie on either
 //! side of it. To epsilon comes the error of the face's own plane, which is larger for a needle. Within that error of the camera
-//! a face may be taken not to be in the way. And an edge that passes the line of sight within the error of both may seem to be
+//! a face may be taken not to be in the way; where the line crosses the image plane, to be on either side of it. And an edge that passes the line of sight within the error of both may seem to be
 //! [on its other side](crate::rounded_line).
 //!
 //! A face in the plane of the hit face contains the point, so it does not hide it. Rounding is no excuse for its shadow: the point
@@ -146,6 +146,13 @@ impl Referee<'_> {
         let may_hold_point = |of: &Face| distance_from_plane(of, point).abs() <= off + of_plane(of);
         // The camera's place is known without error: only the plane's is not.
         let may_hold_camera = |of: &Face| distance_from_plane(of, centre).abs() <= of_plane(of);
+        // Where the line crosses the image plane a way begins that a program has only rounded: it is off as the point is, in
+        // proportion to its distance, and as a face's plane is by rounding the sum of both.
+        let share = self.scene.camera().sensor.focal_length / line.depth();
+        let crossing = centre + from_centre * share;
+        let off_at_crossing = off * share;
+        let may_hold_crossing =
+            |of: &Face| distance_from_plane(of, crossing).abs() <= off_at_crossing + of_plane(of);
         // Whether the hit face's front is seen: a program may take the point's position for the plane's.
         let side = distance_from_plane(face, centre);
         if side.abs() <= off + of_plane(face) {
@@ -154,14 +161,18 @@ impl Referee<'_> {
         if visible {
             return exact.pixel.is_some()
                 && side > 0.0
-                && self.occluders(line).iter().all(|other| may_hold_point(other) || may_hold_camera(other));
+                && self.occluders(line).iter().all(|other| {
+                    may_hold_point(other) || may_hold_camera(other) || may_hold_crossing(other)
+                });
         }
         // A face that does not hide the point passes within rounding of it.
         let mut found = false;
         let bundle = RayBundle { start_radius: off, ..line.bundle() };
         self.bvh.visit(&bundle, |other| {
             // A face in the hit face's own plane never hides it: rounding does not excuse the shadow of a duplicate.
-            found |= !other.is_in_plane_of(face) && may_hold_point(other) && is_beside(other, point, off);
+            found |= !other.is_in_plane_of(face)
+                && (may_hold_point(other) && is_beside(other, point, off)
+                    || may_hold_crossing(other) && is_beside(other, crossing, off_at_crossing));
             if found { f64::NEG_INFINITY } else { bundle.max_range }
         });
         found

@@ -73,17 +73,17 @@ pub const PUBLISHED: [PublishedPack; 6] = [
     PublishedPack {
         name: "pyramids",
         version: "2.0.0",
-        sha256: "1a3eab29ccca8f419c39a150fb24c5b6960107c270f40f108a598b8ceb3aed46",
+        sha256: "4e3e7a2c28322e9189290f48b6c794324311d1ddfe0c56db0f6fc9645775eadf",
     },
     PublishedPack {
         name: "facets",
         version: "2.0.0",
-        sha256: "57a578fc29cec25021ae888a25e0bea4f7aa839a800168e9f63635496ad85478",
+        sha256: "6bf73fca05ccfd05c72ed5cdfadac0bb8778c4c5aeed7427dc72c215e4c71236",
     },
     PublishedPack {
         name: "hard",
         version: "2.0.0",
-        sha256: "eb26a9238f7807d5facf96769d7a7783b1a368b02326e88b591997e3fa38a99f",
+        sha256: "f49c81680319b09f8d948aec26a4a863057454a83f05fdf27fb3ca38f2f2d9d8",
     },
     PublishedPack {
         name: "pyramids",

@@ -170,10 +170,16 @@ pub(super) fn judge_return(
     let pencil = RecordedPencil { truth, recorded, place, beam, stated };
     let of_hit = (hit, of_hit, assumed.class);
 
-    // Who states no pixel and sees a hit that truly lands beside the image lands on the nearest pixel: rounding may excuse that.
-    let nearest =
-        || nearest_pixel(truth.scene().camera(), hit.point).filter(|_| stated.visible == Some(true));
-    let pixel = stated.pixel.unwrap_or_else(|| true_visibility.1.or_else(nearest));
+    // Who states no pixel lands on that of the hit: the true one, or that of the face which it names. Who sees a hit that lands
+    // beside the image lands on the nearest pixel: rounding may excuse that.
+    let nearest = || nearest_pixel(truth.scene().camera(), hit.point);
+    let own = || match nearest() {
+        _ if assumed.is_true => true_visibility.1,
+        Some((pixel, is_on_image)) => is_on_image.then_some(pixel),
+        None => None,
+    };
+    let clamped = || nearest().filter(|_| stated.visible == Some(true)).map(|(pixel, _)| pixel);
+    let pixel = stated.pixel.unwrap_or_else(|| own().or_else(clamped));
     let mut visible = stated.visible.unwrap_or_else(|| pencil.infers_visible(pixel));
     let contradicts = visible && pixel.is_none();
     if contradicts {
@@ -207,19 +213,22 @@ pub(super) fn judge_return(
     }
 }
 
-/// The pixel of the image that is nearest to where a point lands; `None` for a point that is not before the camera.
-fn nearest_pixel(camera: &Mounted<Camera>, point: DVec3) -> Option<Pixel> {
+/// The pixel of the image that is nearest to where a point lands, and whether it lands there; `None` for a point that is not before the
+/// camera.
+fn nearest_pixel(camera: &Mounted<Camera>, point: DVec3) -> Option<(Pixel, bool)> {
     let Mounted { scene_from_sensor: pose, sensor } = camera;
     let seen = Pose { position: DVec3::ZERO, ..pose.inverse() }.rotate(point - pose.position);
     if !(seen.z > sensor.focal_length) {
         return None;
     }
-    let [i, j] = [0, 1].map(|axis: usize| {
+    let place = [0, 1].map(|axis: usize| {
         let at = sensor.focal_length * seen[axis] / seen.z / sensor.pixel_pitch[axis]
             + sensor.principal_point[axis];
-        at.floor().clamp(0.0, f64::from([sensor.width, sensor.height][axis] - 1)) as u32
+        let within = at.floor().clamp(0.0, f64::from([sensor.width, sensor.height][axis] - 1));
+        (within as u32, within == at.floor())
     });
-    Some(Pixel { i, j })
+    let [(i, is_across), (j, is_down)] = place;
+    Some((Pixel { i, j }, is_across && is_down))
 }
 
 /// Another hypothesis that is admissible and that all values fit, if what is not stated leaves one.
