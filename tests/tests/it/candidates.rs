@@ -11,6 +11,7 @@ use raypencil::harness::{
 };
 use raypencil::io::{Overrides, load};
 use raypencil::judge::{Check, Class, GroundTruth, Quantity, Recorded, check};
+use raypencil::pack::BENCH_BEAMS;
 use raypencil::tracer::Tracer;
 use raypencil::{
     Beam, Camera, FluxModel, Image, Mounted, Precision, Renderer, Request, Sampling, Scene, SensorId,
@@ -69,6 +70,12 @@ fn compared(images: &[MonteCarloImage], expected: &[Estimate]) -> Vec<ImageCompa
     images.iter().map(|image| compare_images(image, &expected[image.beam])).collect()
 }
 
+/// The beams of a bench whose pencils pass limits as near as rounding: the last three. Packs named `small` have no bench.
+fn biting_beams(scene: &Scene) -> Vec<SensorId> {
+    let beams = scene.beams().len();
+    if beams < BENCH_BEAMS { Vec::new() } else { (beams - 3..beams).map(SensorId::Beam).collect() }
+}
+
 #[test]
 fn embree_is_right_within_single_precision() {
     for name in ANSWERED {
@@ -90,7 +97,11 @@ fn embree_is_right_within_single_precision() {
             .map(|(item, _)| item.quantity)
             .collect();
         assert_eq!(compared, [Quantity::Hit, Quantity::Face, Quantity::Range, Quantity::Visible], "{name}");
-        assert_eq!(found.of(Class::Rounding), 0, "{name}");
+        // Rounding excuses it only where limits are passed as close as that.
+        let bites = biting_beams(&scene);
+        let elsewhere = found.sensors.iter().filter(|result| !bites.contains(&result.sensor));
+        assert_eq!(elsewhere.map(|result| result.of(Class::Rounding)).sum::<u64>(), 0, "{name}");
+        assert_eq!(found.of(Class::Rounding) > 0, !bites.is_empty(), "{name}");
         // Judged as double precision it fails.
         assert!(!checked(name, "embree", Some(Precision::F64)).0.passes(), "{name}");
     }
@@ -110,7 +121,11 @@ fn embrees_hits_are_micrometres_off_the_face() {
             SensorId::Beam(beam) => scene.beams()[beam].scene_from_sensor.position.z >= 128.0,
         };
         let (mut off_face, mut steep, mut grazing) = (0.0_f64, 0.0_f64, 0);
+        let bites = biting_beams(&scene);
         for (sensor, map) in scene.sensors().zip(&said.answers.maps) {
+            if bites.contains(&sensor) {
+                continue;
+            }
             let (width, height) = scene.size(sensor).expect("a sensor");
             for (i, j) in (0..height).flat_map(|j| (0..width).map(move |i| (i, j))) {
                 let range = map.range.as_ref().expect("ranges").at(i, j).get();

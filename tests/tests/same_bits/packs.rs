@@ -100,7 +100,7 @@ fn the_published_digests_are_those_of_the_packs() {
 fn packs_are_small() {
     for pack in PACKS {
         let bytes: usize = files(&data(&format!("packs/{pack}"))).values().map(Vec::len).sum();
-        assert!(bytes < 3_000_000, "{pack}: {bytes} bytes");
+        assert!(bytes < 4_000_000, "{pack}: {bytes} bytes");
     }
 }
 
@@ -138,9 +138,10 @@ fn every_renderer_passes_with_all_its_quantities_compared() {
                 for (_, tally) in own {
                     assert!(tally.compared() > 400, "{pack} by {renderer}: {quantity} is hardly compared");
                     assert_eq!(tally.not_compared, 0, "{pack} by {renderer}: {quantity}");
-                    // Storage in single precision gives half an ulp, and the arithmetic a little more.
+                    // Storage in single precision gives half an ulp, and the arithmetic a little more: at the smallest cosine of a
+                    // bench, 1e-8, a range is known to some 1e-8 of itself, a sixth of an ulp.
                     if let Some(ulps) = &tally.worst_ulps {
-                        assert!(ulps.value < 0.51, "{pack} by {renderer}: {quantity}, {ulps:?}");
+                        assert!(ulps.value < 0.7, "{pack} by {renderer}: {quantity}, {ulps:?}");
                     }
                 }
             }

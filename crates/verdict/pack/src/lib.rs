@@ -60,7 +60,7 @@ mod units;
 mod verification;
 mod write;
 
-pub use bench::{BENCH_BEAMS, benched, with_bench};
+pub use bench::{BENCH_BEAMS, with_bench};
 pub use blind::{blind_scene, blind_subject};
 pub use check::{CheckError, Checked, Verified, check_pack, check_pack_by};
 pub use check_report::{
@@ -82,7 +82,7 @@ pub use provenance::{Arithmetic, MonteCarloTotal, Provenance, ProvenanceError, n
 pub use published::{PUBLISHED, PackIdentity, PackLabel, PublishedPack};
 pub use sharpness::{Sharpness, sharpness};
 pub use verification::{DRAWN, MAX_ALL, Verification};
-pub use write::{PackError, write_pack, write_questions};
+pub use write::{PackError, benched, write_pack, write_questions};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

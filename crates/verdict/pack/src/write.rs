@@ -19,7 +19,7 @@ use raypencil_scene::{Precision, Progress, Scene, SceneError, SensorId};
 use raypencil_scene_io::{Subject, scene_sha256, write_resolved};
 
 use crate::arrays::ArrayWriter;
-use crate::bench::has_bench;
+use crate::bench::{has_bench, with_bench};
 use crate::clauses::{MIN_RAYS_PER_CLAUSE, can_count_clauses, clause_rays};
 use crate::exr_map::write_exr_map;
 use crate::manifest::{
@@ -81,6 +81,16 @@ pub enum PackError {
         /// Number of such values.
         count: usize,
     },
+}
+
+/// A subject whose scene has a bench, with the digest of that scene.
+///
+/// # Errors
+/// As [`with_bench`](crate::with_bench).
+pub fn benched(subject: Subject) -> Result<Subject, PackError> {
+    let scene = with_bench(&subject.scene)
+        .map_err(|source| PackError::NoBench { name: subject.name.clone(), source })?;
+    Ok(Subject { sha256: scene_sha256(&scene), scene, ..subject })
 }
 
 /// Writes the pack of a scene into `folder`: with all answers, or without any if `blind_seed` is given. Returns its

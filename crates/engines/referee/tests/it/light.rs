@@ -329,7 +329,9 @@ fn a_face_is_told_from_the_point_as_well_as_its_plane_is_known() {
     // That far beside the camera, 1 m from the point. It crosses the way at z = 2 off, which must be beyond the lens: 1/128 m.
     let x = 1.0 - off as f32;
     let screen = [[x, -1.0, -1.0], [x, -1.0, 2.0], [x, 2.0, -1.0]];
-    for occluder in [lid, screen] {
+    // It is told from the place where the way crosses the image plane, too, which is half as near: 1/128 m on a way that falls 2 m
+    // for each metre aside.
+    for (occluder, off) in [(lid, off), (screen, 0.5 * off)] {
         assert_eq!(rule(occluder, 0.0), Ruling::Wrong);
         assert_eq!(rule(occluder, 0.99 * off / per_roundoff), Ruling::Wrong);
         assert_eq!(rule(occluder, 1.01 * off / per_roundoff), Ruling::Rounding(Displacement::ZERO));

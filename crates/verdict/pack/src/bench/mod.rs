@@ -22,13 +22,11 @@ mod rows;
 use std::sync::Arc;
 
 use raypencil_scene::{Beam, Camera, Mounted, Scene, SceneError};
-use raypencil_scene_io::{Subject, scene_sha256};
 
 use crate::bench::beams::bench_beams;
 use crate::bench::bites::biting_beams;
 use crate::bench::faces::AddedFaces;
 use crate::bench::furniture::{backward_beam, before_beam, before_camera};
-use crate::write::PackError;
 
 /// Reflectivity of the bench: unlike that of the ground, so that a flux tells the material.
 const BENCH_REFLECTIVITY: f64 = 0.6;
@@ -65,16 +63,6 @@ fn added_beams(camera: &Mounted<Camera>, edition: Edition, faces: &mut AddedFace
 
 /// Number of beams that [`with_bench`] adds.
 pub const BENCH_BEAMS: usize = 7;
-
-/// A subject whose scene has a bench, with the digest of that scene.
-///
-/// # Errors
-/// As [`with_bench`].
-pub fn benched(subject: Subject) -> Result<Subject, PackError> {
-    let scene = with_bench(&subject.scene)
-        .map_err(|source| PackError::NoBench { name: subject.name.clone(), source })?;
-    Ok(Subject { sha256: scene_sha256(&scene), scene, ..subject })
-}
 
 /// A scene with a bench: its own sensors first, then [`BENCH_BEAMS`] beams more; its own faces first, then those of the
 /// bench.

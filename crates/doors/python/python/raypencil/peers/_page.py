@@ -135,6 +135,13 @@ def page(measured: Sequence[Measured], missing: Mapping[str, str]) -> str:
     lines = [
         "# Other programs' answers to hard rays",
         "",
+        # A test of the documents reads it.
+        "<!-- stands on",
+        'made_by = "raypencil-peers table -o docs/peers.md"',
+        'measured = "other people\'s programs at the versions of the table, asked on one machine"',
+        'shows = ["docs/figures/peers-laws.svg", "docs/figures/peers-speed.svg"]',
+        "-->",
+        "",
         f"{len(others)} ways to ask {len(packages)} packages the rays of `data/rays/hard` ([what they are](hard-rays.md)). Made by"
         " `raypencil-peers table -o docs/peers.md`; `raypencil-peers ask NAME` shows one of them.",
         "",
