@@ -17,6 +17,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let seeds: u64 = std::env::args().nth(1).map_or(Ok(50), |text| text.parse())?;
     let mut page = format!(
         "# How large a mistake passes\n\n\
+         <!-- stands on\n\
+         made_by = \"just slack {seeds}\"\n\
+         inputs = [\"data/packs/facets/manifest.json\", \"data/packs/hard/manifest.json\", \"data/packs/pyramids/manifest.json\"]\n\
+         inputs_digest = \"0000000000000000\"\n\
+         -->\n\n\
          A renderer may keep a clause of the contract with a tolerance: a bias of its shadow rays, edges a little too wide, a far plane \
          a little too far. Here are the smallest such tolerances that a pack notices, for each of {} ways. Each was found with a renderer \
          in double precision that has this one tolerance and is else honest: it answered the pencils of the pack's bench, and was \
