@@ -11,6 +11,9 @@ use super::{cast, drives, paper};
 /// Variable with the path of `axe.min.js`.
 const AXE: &str = "RAYPENCIL_AXE";
 
+/// Width from which some tables of a page may have room for all columns, pixels.
+const MIN_WIDTH_OF_TABLES: u32 = 600;
+
 /// The checker's script. `None`, and words on the terminal, if there is none.
 fn axe() -> Option<String> {
     let Some(path) = std::env::var_os(AXE).map(PathBuf::from) else {
@@ -29,19 +32,27 @@ fn violations(page: &Page) -> Vec<Value> {
 }
 
 fn assert_accessible(axe: &str, file: &Path, ready: &str) {
-    for scheme in ["light", "dark"] {
-        let Some(page) = open(file, "", (1280, 1000)) else { return };
+    // On the narrow page every wide table has to be scrolled, whatever the width of this machine's letters.
+    for (scheme, width) in [("light", 1280), ("dark", 480)] {
+        let Some(page) = open(file, "", (width, 1000)) else { return };
         let colours = json!({ "features": [{ "name": "prefers-color-scheme", "value": scheme }] });
         page.devtools("Emulation.setEmulatedMedia", &colours);
         page.wait(ready);
         page.run(axe);
         let found = violations(&page);
-        assert!(found.is_empty(), "{}, {scheme}: {found:#?}", file.display());
+        assert!(found.is_empty(), "{}, {scheme}, {width} pixels: {found:#?}", file.display());
         // The checker sees what is wrong: a picture without words, a button without a name.
         page.ask("document.querySelector('main').insertAdjacentHTML('beforeend', '<img src=\"data:,\"><button></button>')");
         let rules: Vec<String> =
             violations(&page).iter().map(|one| one[0].as_str().expect("a rule").to_string()).collect();
         assert_eq!(rules, ["button-name", "image-alt"], "{}, {scheme}", file.display());
+        if width < MIN_WIDTH_OF_TABLES {
+            // And what only a pointer can scroll.
+            page.ask("document.querySelectorAll('.scroll').forEach(one => one.removeAttribute('tabindex'))");
+            let rules = violations(&page);
+            let is_told = rules.iter().any(|one| one[0] == "scrollable-region-focusable");
+            assert!(is_told, "{}: {rules:#?}", file.display());
+        }
     }
 }
 
