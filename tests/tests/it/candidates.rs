@@ -11,7 +11,7 @@ use raypencil::harness::{
 };
 use raypencil::io::{Overrides, load};
 use raypencil::judge::{Check, Class, GroundTruth, Quantity, Recorded, check};
-use raypencil::pack::BENCH_BEAMS;
+use raypencil::pack::{BENCH_BEAMS, BITING_BEAMS};
 use raypencil::tracer::Tracer;
 use raypencil::{
     Beam, Camera, FluxModel, Image, Mounted, Precision, Renderer, Request, Sampling, Scene, SensorId,
@@ -70,10 +70,10 @@ fn compared(images: &[MonteCarloImage], expected: &[Estimate]) -> Vec<ImageCompa
     images.iter().map(|image| compare_images(image, &expected[image.beam])).collect()
 }
 
-/// The beams of a bench whose pencils pass limits as near as rounding: the last three. Packs named `small` have no bench.
+/// The beams of a bench whose pencils pass limits as near as rounding, the last ones. Packs named `small` have no bench.
 fn biting_beams(scene: &Scene) -> Vec<SensorId> {
     let beams = scene.beams().len();
-    if beams < BENCH_BEAMS { Vec::new() } else { (beams - 3..beams).map(SensorId::Beam).collect() }
+    if beams < BENCH_BEAMS { Vec::new() } else { (beams - BITING_BEAMS..beams).map(SensorId::Beam).collect() }
 }
 
 #[test]

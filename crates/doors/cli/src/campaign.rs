@@ -1,5 +1,6 @@
 //! `raypencil campaign`: validations of many random terrains, in shards; `merge` and `replay`.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
@@ -13,6 +14,7 @@ use raypencil::io::{MIN_ABANDONED_AGE, create_folder, remove_abandoned, write_re
 
 use crate::args::{self, CampaignCommand, CampaignMerge, CampaignReplay, CampaignRun};
 use crate::console::{Spinner, progress_bar, say};
+use crate::lines::Lines;
 use crate::overwriting::ask;
 use crate::{Outcome, Trouble};
 
@@ -24,10 +26,19 @@ pub(crate) fn campaign(command: &args::Campaign, json: bool) -> Result<Outcome, 
     }
 }
 
-/// Progress bar: finished terrains, rays per second, time left. Hidden if standard error is not a terminal.
+/// Progress bar: finished terrains, rays per second, time left. If standard error is no terminal, a line now and then.
 struct Bar {
     bar: ProgressBar,
     start: Instant,
+    done: Arc<Done>,
+    /// Until it is dropped.
+    _lines: Lines,
+}
+
+/// What is done so far.
+#[derive(Default)]
+struct Done {
+    terrains: AtomicU64,
     /// Rays of this run; those of an interrupted earlier run do not count.
     rays: AtomicU64,
 }
@@ -36,13 +47,22 @@ impl Bar {
     fn new(terrains: u64) -> Self {
         let bar =
             progress_bar(terrains, "{bar:30} {pos}/{len} terrains  {elapsed} elapsed, {eta} left  {msg}");
-        Self { bar, start: Instant::now(), rays: AtomicU64::new(0) }
+        let (start, done) = (Instant::now(), Arc::new(Done::default()));
+        let of_lines = Arc::clone(&done);
+        let lines = Lines::begin(move || {
+            let Done { terrains: finished, rays } = &*of_lines;
+            let (finished, rays) = (finished.load(Ordering::Relaxed), rays.load(Ordering::Relaxed));
+            let seconds = start.elapsed().as_secs();
+            format!("campaign: {finished} of {terrains} terrains, {rays} rays, {seconds} s")
+        });
+        Self { bar, start, done, _lines: lines }
     }
 }
 
 impl CampaignProgress for Bar {
     fn done(&self, terrains: u64, _of: u64, rays: u64) {
-        self.rays.store(rays, Ordering::Relaxed);
+        self.done.terrains.store(terrains, Ordering::Relaxed);
+        self.done.rays.store(rays, Ordering::Relaxed);
         self.bar.set_position(terrains);
         let rate = rays as f64 / self.start.elapsed().as_secs_f64().max(1e-3);
         self.bar.set_message(format!("{:.2} million rays/s", rate / 1e6));
@@ -58,13 +78,18 @@ fn run(command: &CampaignRun, json: bool) -> Result<Outcome, Trouble> {
         campaign = campaign.hunting(words)?;
         campaign.candidate_ms = command.timeout;
         campaign.partial = command.partial;
+        campaign.arithmetic = command.arithmetic;
     }
+    campaign.max_faces = command.max_faces;
+    let campaign = campaign.with_parts(&command.parts)?;
     let bar = Bar::new(command.shard.terrains(&campaign).count() as u64);
     let start = Instant::now();
     ask(&command.output, "a campaign")?;
     remove_abandoned(&command.output, MIN_ABANDONED_AGE);
     let result = run_shard(&campaign, command.shard, &command.output, &bar)?;
     bar.bar.finish_and_clear();
+    let rays = bar.done.rays.load(Ordering::Relaxed);
+    drop(bar);
     if command.shard != Shard::WHOLE {
         // One shard has no summary of its own: the campaign is all shards together.
         let text = match json {
@@ -83,7 +108,6 @@ fn run(command: &CampaignRun, json: bool) -> Result<Outcome, Trouble> {
     merged.campaign = campaign;
     write_campaign(&merged, &command.output)?;
     let seconds = start.elapsed().as_secs_f64();
-    let rays = bar.rays.load(Ordering::Relaxed);
     let rate = rays as f64 / seconds / 1e6;
     let before = merged.compared() - rays;
     let before = if before > 0 { format!(" ({before} rays from earlier runs)") } else { String::new() };

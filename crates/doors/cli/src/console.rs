@@ -124,6 +124,11 @@ pub(crate) fn in_colour() -> bool {
     }
 }
 
+/// Whether lines may tell how far a work is: standard error is no terminal, on which a bar is drawn.
+pub(crate) fn shows_lines() -> bool {
+    !manners().is_quiet && !std::io::stderr().is_terminal()
+}
+
 /// A progress bar of `length` steps, with the template's layout. Hidden if standard error is not a terminal, or by
 /// `--quiet`.
 pub(crate) fn progress_bar(length: u64, template: &str) -> ProgressBar {

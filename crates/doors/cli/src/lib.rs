@@ -38,6 +38,7 @@ mod console;
 mod diff;
 mod drive;
 mod file_frame;
+mod lines;
 mod man;
 mod memory;
 mod minimise;

@@ -9,7 +9,7 @@ use raypencil::drive::RecordContents;
 use raypencil::harness::MapFormat;
 use raypencil::io::{DeclaredChannel, HeightUnit, LengthUnit, NoData, SceneIoError, Setting, UpAxis};
 use raypencil::judge::{Class, JudgeShare};
-use raypencil::pack::PackLabel;
+use raypencil::pack::{Arithmetic, PackLabel};
 use raypencil::rover::RULE_NAMES;
 use raypencil::sweep::{Axis, Chart, SweepError, Task};
 use raypencil::{CastRay, Fidelity, FluxModel, Precision};
@@ -132,6 +132,11 @@ pub(crate) fn judge_share() -> impl TypedValueParser<Value = JudgeShare> {
 /// `--arithmetic`.
 pub(crate) fn precision() -> impl TypedValueParser<Value = Precision> {
     one_of([("f64", "Double precision", Precision::F64), ("f32", "Single precision", Precision::F32)])
+}
+
+/// `--arithmetic` of a program that writes a `candidate.json`, or none.
+pub(crate) fn arithmetic() -> impl TypedValueParser<Value = Arithmetic> {
+    one_of([("f64", "Double precision", Arithmetic::F64), ("f32", "Single precision", Arithmetic::F32)])
 }
 
 /// `--part`.

@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use pyo3::prelude::*;
 use raypencil::Progress;
 use raypencil::campaign::{
-    Campaign, CampaignProgress, OwnScenes, Shard, campaign_document, has_result, merge, run_shard,
+    Campaign, CampaignProgress, OwnScenes, PartName, Shard, campaign_document, has_result, merge, run_shard,
     write_campaign,
 };
+use raypencil::pack::Arithmetic;
 
 use crate::failure::Failure;
 use crate::watch::{Watch, watched};
@@ -33,11 +34,22 @@ fn milliseconds(seconds: f64) -> Result<u64, Failure> {
     }
 }
 
+fn arithmetic_named(name: &str) -> Result<Arithmetic, Failure> {
+    let found = [Arithmetic::F32, Arithmetic::F64].into_iter().find(|one| one.word() == name);
+    found.ok_or_else(|| Failure::new(format!("arithmetic is {name:?}; expected \"f64\" or \"f32\"")))
+}
+
+fn part_named(name: &str) -> Result<PartName, Failure> {
+    let found = PartName::ALL.into_iter().find(|part| part.word() == name);
+    let names = || PartName::ALL.map(|part| format!("{:?}", part.word())).join(", ");
+    found.ok_or_else(|| Failure::new(format!("parts has {name:?}; expected some of {}", names())))
+}
+
 #[pymethods]
 impl CampaignCore {
     #[new]
     #[allow(clippy::too_many_arguments, reason = "the arguments of a Python function by their names")]
-    #[pyo3(signature = (terrains, seed, scenes=None, rig=None, candidate_command=None, timeout=None, partial=false))]
+    #[pyo3(signature = (terrains, seed, scenes=None, rig=None, candidate_command=None, timeout=None, partial=false, arithmetic=None, parts=None, max_faces=None))]
     fn new(
         py: Python<'_>,
         terrains: u64,
@@ -47,6 +59,9 @@ impl CampaignCore {
         candidate_command: Option<String>,
         timeout: Option<f64>,
         partial: bool,
+        arithmetic: Option<String>,
+        parts: Option<Vec<String>>,
+        max_faces: Option<u64>,
     ) -> PyResult<Self> {
         let made = py.detach(|| -> Result<Campaign, Failure> {
             let mut campaign = Campaign::new(seed, terrains).of_commit(raypencil_cli::commit());
@@ -57,8 +72,12 @@ impl CampaignCore {
                 campaign = campaign.hunting(command)?;
                 campaign.candidate_ms = timeout.map(milliseconds).transpose()?;
                 campaign.partial = partial;
+                campaign.arithmetic = arithmetic.as_deref().map(arithmetic_named).transpose()?;
             }
-            Ok(campaign)
+            campaign.max_faces = max_faces;
+            let parts: Result<Vec<PartName>, Failure> =
+                parts.iter().flatten().map(|name| part_named(name)).collect();
+            Ok(campaign.with_parts(&parts?)?)
         });
         made.map(Self).map_err(|failure| failure.into_exception(py))
     }

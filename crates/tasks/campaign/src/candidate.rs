@@ -2,17 +2,18 @@
 
 use std::path::Path;
 
+use raypencil_diagnosis::{Diagnosis, Reason};
 use raypencil_files::shortened;
 use raypencil_harness::{Candidate, judge_candidate};
 use raypencil_judge::{Item, Quantity};
-use raypencil_pack::write_questions;
+use raypencil_pack::{Declarations, precision_of, write_questions};
 use raypencil_scene::{SensorId, Silent};
 use raypencil_scene_io::{Subject, quoted};
 
 use crate::candidate_process::{self, Ended};
 use crate::error::CampaignError;
 use crate::plan::Campaign;
-use crate::record::{PartName, PartRecord};
+use crate::record::{PartName, PartRecord, ReasonRecord};
 
 /// Misses of one scene that are written as packs.
 const MAX_MISSES: usize = 2;
@@ -46,7 +47,9 @@ pub(crate) fn hunt(
     if let Some(why) = run(campaign, command, [&pack, &out], folder.path())? {
         return Ok(failed(why));
     }
-    let candidate = match Candidate::read(&out, &subject.scene) {
+    let precision = campaign.arithmetic.map(precision_of);
+    let declared = Declarations { precision, ..Declarations::default() };
+    let candidate = match Candidate::read_as(&out, &subject.scene, &declared) {
         Ok(candidate) => candidate,
         // The folder has another name each time.
         Err(error) => return Ok(failed(error.to_string().replace(&out.display().to_string(), "{out}"))),
@@ -75,7 +78,21 @@ pub(crate) fn hunt(
     } else {
         None
     };
-    Ok(PartRecord { failed, candidate: Some(shortened(judged.report.candidate.name)), ..record })
+    let reasons = judged.report.diagnosis.as_ref().map_or_else(Vec::new, reason_records);
+    Ok(PartRecord { failed, reasons, candidate: Some(shortened(judged.report.candidate.name)), ..record })
+}
+
+/// The reasons of a diagnosis.
+fn reason_records(diagnosis: &Diagnosis) -> Vec<ReasonRecord> {
+    let record = |reason: &Reason| ReasonRecord {
+        mistakes: reason.mistakes.iter().map(|mistake| mistake.key().to_string()).collect(),
+        clause: reason.clause(),
+        wrong: reason.wrong,
+        explained: reason.explained,
+        right: reason.right,
+        broken: reason.broken,
+    };
+    diagnosis.reasons.iter().map(record).collect()
 }
 
 /// Quantities of which one at least says what a ray hits.

@@ -8,6 +8,7 @@ use raypencil_report::{
 
 use crate::merge::Merged;
 use crate::own_scenes::OwnScenes;
+use crate::reasons::{campaign_reasons, scenes_with_wrong_rays};
 use crate::record::{PartName, PartRecord, TerrainRecord, WrongRay, probe_arguments};
 use crate::summary::campaign_data;
 use crate::totals::{CampaignTotal, QuantityTotal, WorstRay, wrong_rays};
@@ -23,6 +24,9 @@ const MAX_RAYS_ON_SCREEN: usize = 10;
 
 /// Maximum number of terrains that are listed.
 const MAX_LISTED_TERRAINS: usize = 30;
+
+/// Maximum number of reasons that are told in words.
+const MAX_REASONS: usize = 3;
 
 /// Heads of the columns of classes, in the order of [`COMPARE_CLASSES`].
 const CLASSES: [&str; Class::COUNT] = ["agree", "tie", "rounding", "approximation", "undecided", "defect"];
@@ -78,7 +82,7 @@ pub fn campaign_document(merged: &Merged, has: impl Fn(&str) -> bool) -> Documen
         question,
         outcome,
         headline,
-        remarks: explanation.into_iter().map(String::from).collect(),
+        remarks: explanation.into_iter().map(String::from).chain(whys(merged)).collect(),
         explanation: Vec::new(),
         counts: Vec::new(),
         facts,
@@ -159,6 +163,17 @@ fn folders(merged: &Merged, defects: u64) -> Vec<String> {
 fn warnings(merged: &Merged) -> Vec<String> {
     let warnings = merged.warnings();
     warnings.iter().map(|(part, warning)| format!("Warning: scenes {}: {warning}", part.word())).collect()
+}
+
+/// Why the program under test is wrong, in words.
+fn whys(merged: &Merged) -> Vec<String> {
+    let reasons = campaign_reasons(merged);
+    let of = scenes_with_wrong_rays(merged);
+    let told = reasons.iter().take(MAX_REASONS).map(|reason| reason.sentence(of));
+    let more = reasons.len().saturating_sub(MAX_REASONS);
+    let more = (more > 0)
+        .then(|| format!("{} in summary.json.", counted(more as u64, "more reason", "more reasons")));
+    told.chain(more).collect()
 }
 
 fn failures(merged: &Merged, most: usize) -> Vec<String> {

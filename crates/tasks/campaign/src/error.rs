@@ -8,6 +8,14 @@ use raypencil_scene_io::SceneIoError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CampaignError {
+    /// A scene of each terrain that the campaign cannot have.
+    #[error("--parts {part}: {why}")]
+    Part {
+        /// Its name.
+        part: &'static str,
+        /// Why there is none.
+        why: &'static str,
+    },
     /// A folder; the message names it.
     #[error(transparent)]
     Folder(#[from] FolderError),

@@ -5,6 +5,7 @@
 use std::time::Duration;
 
 use raypencil_files::command_files;
+use raypencil_pack::Arithmetic;
 use raypencil_scene_io::{InputFile, quoted};
 use serde::{Deserialize, Serialize};
 
@@ -63,6 +64,15 @@ pub struct Campaign {
     /// Whether it may leave out what decides: which face a ray meets, and how far.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub partial: bool,
+    /// The arithmetic that it computes in; `None`: as its `candidate.json` says, else f64.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub arithmetic: Option<Arithmetic>,
+    /// The scenes of each terrain; empty: all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<PartName>,
+    /// Most faces of a ground whose scenes are run. A lattice, which has few faces of its own, is run beside any ground.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_faces: Option<u64>,
 }
 
 impl Campaign {
@@ -79,6 +89,9 @@ impl Campaign {
             candidate_files: Vec::new(),
             candidate_ms: None,
             partial: false,
+            arithmetic: None,
+            parts: Vec::new(),
+            max_faces: None,
         }
     }
 
@@ -136,7 +149,49 @@ impl Campaign {
             .map_or(String::new(), |command| format!(" --candidate-command {}", quoted(command)));
         candidate += &self.candidate_ms.map_or(String::new(), |ms| format!(" --timeout {}", ms as f64 / 1e3));
         candidate += if self.partial { " --partial" } else { "" };
-        format!("raypencil campaign {what} --seed {seed}{candidate} -o DIR")
+        candidate += &self.arithmetic.map_or(String::new(), |one| format!(" --arithmetic {}", one.word()));
+        format!("raypencil campaign {what}{} --seed {seed}{candidate} -o DIR", self.bounds())
+    }
+
+    /// The options that bound it, each with a blank before it.
+    fn bounds(&self) -> String {
+        let parts: Vec<&str> = self.parts.iter().map(|part| part.word()).collect();
+        let parts = if parts.is_empty() { String::new() } else { format!(" --parts {}", parts.join(",")) };
+        parts + &self.max_faces.map_or(String::new(), |most| format!(" --max-faces {most}"))
+    }
+
+    /// The scenes of a terrain whose ground has so many faces, in the order of reports.
+    pub(crate) fn parts_of(&self, faces: u64) -> impl Iterator<Item = PartName> {
+        let is_small = self.max_faces.is_none_or(|most| faces <= most);
+        let is_run = move |part: &PartName| {
+            (self.parts.is_empty() || self.parts.contains(part))
+                && self.can_have(*part).is_ok()
+                && (is_small || *part == PartName::Lattice)
+        };
+        PartName::ALL.into_iter().filter(is_run)
+    }
+
+    /// Whether the terrains of this campaign can have such a scene; why not.
+    fn can_have(&self, part: PartName) -> Result<(), &'static str> {
+        match part {
+            PartName::Paper if self.candidate.is_some() => {
+                Err("the paper's approximations are of scanline alone")
+            }
+            PartName::Lattice if self.scenes.is_some() => Err("scenes of one's own have no lattice"),
+            _ => Ok(()),
+        }
+    }
+
+    /// The same with these scenes of each terrain alone. To be called once the candidate and one's own scenes are known.
+    ///
+    /// # Errors
+    /// A scene that the terrains of this campaign do not have.
+    pub fn with_parts(self, parts: &[PartName]) -> Result<Self, CampaignError> {
+        for part in parts {
+            self.can_have(*part).map_err(|why| CampaignError::Part { part: part.word(), why })?;
+        }
+        let parts = PartName::ALL.into_iter().filter(|part| parts.contains(part)).collect();
+        Ok(Self { parts, ..self })
     }
 
     /// Whether another campaign asks the same: it may find other bytes in the files of its scenes and of its candidate.
@@ -146,6 +201,7 @@ impl Campaign {
             candidate_files: Vec::new(),
             candidate_ms: None,
             partial: false,
+            arithmetic: None,
             ..campaign.clone()
         };
         plan(self) == plan(other)
@@ -156,8 +212,14 @@ impl Campaign {
     pub(crate) fn has_same_files(&self, other: &Self, terrain: u64) -> bool {
         let scene =
             |campaign: &Self| campaign.scenes.as_ref().map(|scenes| scenes.sha256(terrain).to_string());
-        let candidate =
-            |campaign: &Self| (campaign.candidate_files.clone(), campaign.candidate_time(), campaign.partial);
+        let candidate = |campaign: &Self| {
+            (
+                campaign.candidate_files.clone(),
+                campaign.candidate_time(),
+                campaign.partial,
+                campaign.arithmetic,
+            )
+        };
         scene(self) == scene(other) && candidate(self) == candidate(other)
     }
 
@@ -172,7 +234,8 @@ impl Campaign {
         let own = if scenes.is_some() { "own " } else { "" };
         let candidate =
             candidate.as_ref().map_or(String::new(), |command| format!(", candidate `{command}`"));
-        format!("{terrains} {own}terrains, seed {seed}, {}{candidate}", self.build())
+        let bounds = self.bounds().replace(" --", ", --");
+        format!("{terrains} {own}terrains, seed {seed}, {}{candidate}{bounds}", self.build())
     }
 
     /// The same over one's own scenes: each is a terrain.

@@ -68,6 +68,9 @@ pub struct PartRecord {
     pub quantities: Vec<QuantityRecord>,
     /// The first wrong rays.
     pub wrong: Vec<WrongRay>,
+    /// Why rays of the program under test are wrong, where mistakes explain it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub reasons: Vec<ReasonRecord>,
     /// Name of the program under test, if it answered.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub candidate: Option<String>,
@@ -122,6 +125,24 @@ pub struct WrongRay {
     pub what: String,
 }
 
+/// A reason why rays of a scene are wrong: the mistakes and what they explain.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ReasonRecord {
+    /// Names of the mistakes for programs, one or two.
+    pub mistakes: Vec<String>,
+    /// What would make the rays right, as a clause that follows "if".
+    pub clause: String,
+    /// Wrong rays on which the mistakes were tried.
+    pub wrong: u64,
+    /// Those that they explain.
+    pub explained: u64,
+    /// Right rays on which the mistakes were tried.
+    pub right: u64,
+    /// Those that become wrong.
+    pub broken: u64,
+}
+
 impl PartRecord {
     /// The record of a comparison of all sensors; `hits` of their rays hit the terrain.
     pub(crate) fn of(part: PartName, hits: u64, sensors: &[SensorResult]) -> Self {
@@ -134,6 +155,7 @@ impl PartRecord {
             judged: 0,
             quantities: Vec::new(),
             wrong: Vec::new(),
+            reasons: Vec::new(),
             candidate: None,
             failed: None,
         };

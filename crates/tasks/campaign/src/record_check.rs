@@ -4,7 +4,7 @@
 use raypencil_judge::Class;
 
 use crate::plan::Campaign;
-use crate::record::{MAX_DESCRIBED_RAYS, PartName, PartRecord, TerrainRecord};
+use crate::record::{MAX_DESCRIBED_RAYS, PartName, PartRecord, ReasonRecord, TerrainRecord};
 
 /// Maximum of any count of a scene. Sums over all terrains of a campaign stay below 2^63.
 const MAX_COUNT: u64 = 1 << 42;
@@ -12,15 +12,8 @@ const MAX_COUNT: u64 = 1 << 42;
 /// Maximum length of a text of a record, bytes.
 const MAX_TEXT_BYTES: usize = 1 << 14;
 
-/// The scenes of each terrain, in their order.
-fn expected_parts(campaign: &Campaign) -> Vec<PartName> {
-    let is_there = |part: &PartName| match part {
-        PartName::Paper => campaign.candidate.is_none(),
-        PartName::Lattice => campaign.scenes.is_none(),
-        PartName::Own | PartName::Aimed => true,
-    };
-    PartName::ALL.into_iter().filter(is_there).collect()
-}
+/// Maximum number of reasons of a scene: one for each sensor.
+const MAX_REASONS: usize = 65;
 
 /// Refuses a record that no terrain of the campaign can have: what is wrong.
 pub(crate) fn check_record(record: &TerrainRecord, campaign: &Campaign) -> Result<(), String> {
@@ -29,7 +22,7 @@ pub(crate) fn check_record(record: &TerrainRecord, campaign: &Campaign) -> Resul
         return Err(at(format!("there are {} terrains", campaign.terrains)));
     }
     let parts: Vec<PartName> = record.parts.iter().map(|part| part.part).collect();
-    let expected = expected_parts(campaign);
+    let expected: Vec<PartName> = campaign.parts_of(record.faces).collect();
     if parts != expected {
         let words = |parts: &[PartName]| parts.iter().map(|part| part.word()).collect::<Vec<_>>().join(", ");
         return Err(at(format!("scenes {} in place of {}", words(&parts), words(&expected))));
@@ -78,6 +71,25 @@ fn check_part(part: &PartRecord) -> Result<(), String> {
         if text.len() > MAX_TEXT_BYTES {
             return Err(format!("a text of {} bytes, longer than {MAX_TEXT_BYTES}", text.len()));
         }
+    }
+    let texts = part.reasons.iter().flat_map(|one| one.mistakes.iter().chain([&one.clause]));
+    for text in texts {
+        if text.len() > MAX_TEXT_BYTES {
+            return Err(format!("a text of {} bytes, longer than {MAX_TEXT_BYTES}", text.len()));
+        }
+    }
+    for ReasonRecord { mistakes, wrong, explained, right, broken, .. } in &part.reasons {
+        if !(1..=2).contains(&mistakes.len()) {
+            return Err(format!("a reason of {} mistakes", mistakes.len()));
+        }
+        if explained > wrong || broken > right || [wrong, right].into_iter().any(|count| *count > MAX_COUNT) {
+            return Err(format!(
+                "a reason that explains {explained} of {wrong} rays and breaks {broken} of {right}"
+            ));
+        }
+    }
+    if part.reasons.len() > MAX_REASONS || (part.wrong.is_empty() && !part.reasons.is_empty()) {
+        return Err(format!("{} reasons for {wrong} wrong rays", part.reasons.len()));
     }
     // Reports show commands with these names, which people copy into a shell.
     let worst = || part.quantities.iter().flat_map(|one| [&one.worst_error, &one.worst_ratio]).flatten();

@@ -6,6 +6,7 @@ use raypencil_judge::{COMPARE_CLASSES, class_counts_json};
 use serde_json::{Map, Value, json};
 
 use crate::merge::Merged;
+use crate::reasons::campaign_reasons;
 use crate::record::{PartName, probe_arguments};
 use crate::totals::{CampaignTotal, WorstRay, wrong_rays};
 
@@ -76,6 +77,7 @@ pub(crate) fn campaign_data(merged: &Merged) -> Map<String, Value> {
         "parts": parts,
         "candidate": merged.campaign.candidate,
         "no_answer": failures,
+        "reasons": campaign_reasons(merged),
         "first_wrong": wrong.take(MAX_LISTED_RAYS).collect::<Vec<_>>(),
     });
     match document {

@@ -30,20 +30,22 @@ pub fn terrain(
     found: Option<&Path>,
 ) -> Result<TerrainRecord, CampaignError> {
     let own = own_scene(campaign, number)?;
-    let aimed = aimed_scene(campaign, number, own.mesh());
-    // A lattice has a ground of its own.
-    let lattice = campaign.scenes.is_none().then(|| lattice_scene(campaign, number));
     let faces = own.mesh().faces().len() as u64;
+    let asked: Vec<PartName> = campaign.parts_of(faces).collect();
+    let aimed = asked.contains(&PartName::Aimed).then(|| aimed_scene(campaign, number, own.mesh()));
+    // A lattice has a ground of its own.
+    let lattice = asked.contains(&PartName::Lattice).then(|| lattice_scene(campaign, number));
     let parts = [
         (PartName::Own, Some(&own), JudgeShare::Sample),
         (PartName::Paper, Some(&own), JudgeShare::Sample),
-        (PartName::Aimed, Some(&aimed), JudgeShare::All),
+        (PartName::Aimed, aimed.as_ref(), JudgeShare::All),
         (PartName::Lattice, lattice.as_ref(), JudgeShare::All),
     ];
     let parts = parts.into_iter().filter_map(|(part, scene, share)| Some((part, scene?, share)));
+    let parts = parts.filter(|(part, ..)| asked.contains(part));
     let mut records = Vec::new();
     if let Some(command) = &campaign.candidate {
-        for (part, scene, _) in parts.filter(|(part, ..)| *part != PartName::Paper) {
+        for (part, scene, _) in parts {
             let name = format!("terrain-{number:06}-{}", part.word());
             let subject = Subject {
                 scene: scene.clone(),

@@ -3,6 +3,7 @@
 //! Maps are judged as by `check`. The images of a Monte Carlo renderer are not sums over pencils: they have the same
 //! expectation, and are compared by their own standard errors.
 
+use raypencil_diagnosis::{Diagnosis, diagnose};
 use raypencil_judge::{Answers, Check, Class, GroundTruth, ListedDefect, Recorded, check, listed_defects};
 use raypencil_scene::Progress;
 use raypencil_scene_io::Subject;
@@ -28,6 +29,8 @@ pub struct CandidateReport {
     pub candidate: Candidate,
     /// The check of its maps.
     pub check: Check,
+    /// Why rays are wrong, where a mistake explains it.
+    pub diagnosis: Option<Diagnosis>,
     /// The comparisons of its Monte Carlo images, in the order of [`Candidate::images`].
     pub images: Vec<ImageComparison>,
     /// The comparisons of its radiance maps, in the order of [`Candidate::radiance`].
@@ -95,9 +98,24 @@ pub(crate) fn evaluate(
     let expected = if has_images { expected_images(scene, REALISATIONS, progress) } else { Vec::new() };
     let report = |candidate: Candidate| {
         let check = check(&truth, &candidate.recorded, progress);
+        let diagnosis = (!check.passes())
+            .then(|| {
+                progress.stage(&format!(
+                    "looking for a mistake that explains what is wrong of {}",
+                    candidate.name
+                ));
+                diagnose(&truth, &candidate.recorded, &check)
+            })
+            .flatten();
         let images = candidate.images.iter().map(|image| compare_images(image, &expected[image.beam]));
         let radiance = candidate.radiance.iter().map(|map| compare_radiance(&truth, map));
-        CandidateReport { check, images: images.collect(), radiance: radiance.collect(), candidate }
+        CandidateReport {
+            check,
+            diagnosis,
+            images: images.collect(),
+            radiance: radiance.collect(),
+            candidate,
+        }
     };
     let candidates = candidates.into_iter().map(report).collect();
     Scoreboard { ours, candidates, exact: truth.into_answers() }

@@ -3,6 +3,7 @@
 use crate::agree::tolerance_of;
 use crate::case::Case;
 use crate::diagnosis::{Diagnosis, Reason};
+use crate::landing::explained_by_camera;
 use crate::mistake::Mistake;
 use crate::sample::WrongRays;
 use crate::search::{Finding, Search};
@@ -43,6 +44,14 @@ pub fn diagnose(truth: &GroundTruth<'_>, recorded: &Recorded, check: &Check) -> 
         found.extend(same.map(|finding| (sensors, finding)));
         is_open
     });
+    // Another camera has the light of right pencils land elsewhere.
+    let of_camera = found.iter().find(|(sensors, _)| *sensors == [SensorId::Camera]);
+    if let Some((rules, of_camera)) = of_camera.and_then(|(_, one)| Some((one.rules?, one.clone()))) {
+        for (beam, tally) in explained_by_camera(truth, recorded, check, &open, &rules.numbers) {
+            open.retain(|sensor| *sensor != beam);
+            found.push((vec![beam], Finding { tally, ..of_camera.clone() }));
+        }
+    }
     // Rays of several sensors together say what those of each do not. A pair of mistakes might be one of each.
     if open.len() > 1
         && let Some(finding) =

@@ -2,6 +2,7 @@
 
 use crate::mistake::Mistake;
 use raypencil_scene::SensorId;
+use serde_json::{Value, json};
 
 /// One mistake, or two at once, that explains why rays of some sensors are wrong.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,6 +37,22 @@ impl Reason {
             format!("{mistake} ({file}, {place})")
         };
         self.mistakes.iter().map(one).collect::<Vec<_>>().join(", and ")
+    }
+
+    /// The reason for programs: `reason` of `docs/formats/check.schema.json`.
+    pub fn to_json(&self) -> Value {
+        let mistakes = self.mistakes.iter().map(|mistake| {
+            let (file, place) = mistake.docs();
+            json!({ "name": mistake.key(), "what": mistake.to_string(), "docs": format!("{file}, {place}") })
+        });
+        json!({
+            "bundles": self.sensors.iter().map(ToString::to_string).collect::<Vec<_>>(),
+            "explained": self.explained,
+            "wrong": self.wrong,
+            "broken": self.broken,
+            "right": self.right,
+            "mistakes": mistakes.collect::<Vec<_>>(),
+        })
     }
 
     /// The reason as one sentence, without its full stop.
@@ -93,9 +110,17 @@ impl Diagnosis {
     pub fn sentence(&self) -> String {
         let mut parts: Vec<String> = self.reasons.iter().map(Reason::sentence).collect();
         if !self.unexplained.is_empty() {
-            parts.push(format!("the wrong rays of {} have another cause", listed(&self.unexplained)));
+            parts.push(format!("for the wrong rays of {} no reason is known", listed(&self.unexplained)));
         }
         parts.join("; ")
+    }
+
+    /// The diagnosis for programs: `diagnosis` of `docs/formats/check.schema.json`.
+    pub fn to_json(&self) -> Value {
+        json!({
+            "reasons": self.reasons.iter().map(Reason::to_json).collect::<Vec<_>>(),
+            "unexplained": self.unexplained.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        })
     }
 
     /// The reason that concerns a sensor.

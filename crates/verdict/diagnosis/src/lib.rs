@@ -64,6 +64,7 @@
 //! cuts           lost lines and lost lengths, by an interval search
 //! fit            the corrections to try, and numbers found from the recording
 //! judged         a corrected recording before the judge
+//! landing        what another camera does to the light of beams
 //! rules          rules and numbers of rays that may differ
 //! cast           rays cast by other rules
 //! calibrate      numbers of a sensor, by least squares
@@ -85,6 +86,7 @@ mod diagnosis;
 mod fit;
 mod forward;
 mod judged;
+mod landing;
 mod lengths;
 mod mistake;
 mod numbers;

@@ -60,7 +60,7 @@ mod units;
 mod verification;
 mod write;
 
-pub use bench::{BENCH_BEAMS, with_bench};
+pub use bench::{BENCH_BEAMS, BITING_BEAMS, with_bench};
 pub use blind::{blind_scene, blind_subject};
 pub use check::{CheckError, Checked, Verified, check_pack, check_pack_by};
 pub use check_report::{

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use raypencil_files::{DeclaredChannel, Fault, FileError, bytes};
 use raypencil_scene::{Precision, Scene};
 use raypencil_scene_io::scene_sha256;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::manifest::ManifestScene;
 use crate::note_values::{ChannelNames, MissNumber};
@@ -53,7 +53,7 @@ pub struct Provenance {
 }
 
 /// Arithmetic that a program computes in, whichever type it stores.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Arithmetic {
     /// IEEE 754 single precision.
@@ -96,6 +96,16 @@ pub enum ProvenanceError {
         /// Digest of the scene to compare with.
         ours: String,
     },
+}
+
+impl Arithmetic {
+    /// Its name in files and on the command line.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
 }
 
 impl Provenance {

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use raypencil::campaign::{PartName, Shard};
+use raypencil::pack::Arithmetic;
 
-use crate::parsers::{part_name, seconds, shard};
+use crate::parsers::{arithmetic, part_name, seconds, shard};
 
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true)]
@@ -67,6 +68,18 @@ pub(crate) struct CampaignRun {
     /// Take answers that do not say what a ray hits, such as a light alone; without it such a sensor has no answer.
     #[arg(long, requires = "candidate_command")]
     pub(crate) partial: bool,
+
+    /// Arithmetic of the program. Default: as its candidate.json says, else f64.
+    #[arg(long, value_name = "ARITHMETIC", requires = "candidate_command", value_parser = arithmetic())]
+    pub(crate) arithmetic: Option<Arithmetic>,
+
+    /// Scenes of each terrain, separated by commas; default: all.
+    #[arg(long, value_name = "PART,...", value_delimiter = ',', value_parser = part_name())]
+    pub(crate) parts: Vec<PartName>,
+
+    /// Leave out grounds with more faces. A lattice, which has few faces of its own, stays.
+    #[arg(long, value_name = "N")]
+    pub(crate) max_faces: Option<u64>,
 
     /// Output folder; a campaign that was interrupted there is resumed.
     #[arg(short, long, value_name = "DIR", default_value = "out/campaign")]

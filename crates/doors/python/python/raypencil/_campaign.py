@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import os
+from collections.abc import Sequence
 from typing import Any
 
 from . import _raypencil
@@ -52,6 +53,9 @@ def campaign(
     candidate_command: str | None = None,
     timeout: float | None = None,
     partial: bool = False,
+    arithmetic: str | None = None,
+    parts: Sequence[str] | None = None,
+    max_faces: int | None = None,
     shards: int | None = None,
     client: Any = None,
     retries: int = 3,
@@ -68,7 +72,10 @@ def campaign(
         candidate_command: a program to hunt in: ``'my-tracer {pack} {out}'``; docs/guide/campaign.md.
         timeout: most time of that program for one scene, seconds; half an hour by default.
         partial: whether that program may leave out what decides, faces and distances.
-        shards: parts of the campaign; 1, or with ``client`` one for ten terrains. The result does not depend on it.
+        arithmetic: ``"f64"`` or ``"f32"``, that of the program; as its ``candidate.json`` says by default, else ``"f64"``.
+        parts: scenes of each terrain, some of ``"own"``, ``"paper"``, ``"aimed"`` and ``"lattice"``; all by default.
+        max_faces: grounds with more faces are left out; a lattice, which has few faces of its own, stays.
+        shards: shards of the campaign; 1, or with ``client`` one for ten terrains. The result does not depend on it.
         client: a ``distributed.Client``; then each shard is a task of its cluster. Its workers need this package, in the same
             version, and the files that are named. Without it the campaign runs here, on all cores.
         retries: how often a shard that fails on the cluster is tried again.
@@ -85,7 +92,8 @@ def campaign(
     arguments: dict[str, Any] = {"terrains": terrains, "seed": seed, "candidate_command": candidate_command}
     arguments["scenes"] = None if scenes is None else os.path.abspath(os.fspath(scenes))
     arguments["rig"] = None if rig is None else os.path.abspath(os.fspath(rig))
-    arguments |= {"timeout": timeout, "partial": partial}
+    arguments |= {"timeout": timeout, "partial": partial, "arithmetic": arithmetic, "max_faces": max_faces}
+    arguments["parts"] = None if parts is None else list(parts)
     core = _raypencil.CampaignCore(**arguments)
     folder = os.fspath(output)
     task = functools.partial(_shard, arguments)

@@ -69,6 +69,9 @@ class CampaignCore:
         candidate_command: str | None = None,
         timeout: float | None = None,
         partial: bool = False,
+        arithmetic: str | None = None,
+        parts: Sequence[str] | None = None,
+        max_faces: int | None = None,
     ) -> CampaignCore: ...
     @property
     def terrains(self) -> int: ...

@@ -1,8 +1,8 @@
 //! The reports of a campaign: the summary against its schema, and the screen.
 
 use raypencil_campaign::{
-    Campaign, Merged, PartName, PartRecord, QuantityRecord, TerrainRecord, WorstRecord, WrongRay,
-    campaign_document, terrain, write_campaign,
+    Campaign, Merged, PartName, PartRecord, QuantityRecord, ReasonRecord, TerrainRecord, WorstRecord,
+    WrongRay, campaign_document, terrain, write_campaign,
 };
 use raypencil_judge::Quantity;
 use raypencil_tests::schema::schema_faults;
@@ -44,6 +44,7 @@ fn with_hits(hits: u64, by_class: [u64; 6], wrong: Vec<WrongRay>) -> Merged {
             worst_ratio: worst(f64::from(i) / 16.0, i),
         }],
         wrong: wrong.clone(),
+        reasons: Vec::new(),
         candidate: None,
         failed: None,
     };
@@ -196,4 +197,39 @@ fn the_page_of_a_hunt_says_what_is_hunted_and_what_failed() {
     let json: Value = serde_json::from_str(&campaign_json(&merged)).unwrap();
     assert_eq!(json["no_answer"][0]["terrain"], 1);
     assert_eq!(json["verdict"], "defects");
+}
+
+#[test]
+fn the_same_mistake_of_many_scenes_is_one_reason() {
+    let mut merged = made_up([990, 6, 0, 0, 0, 4], vec![wrong_ray()]);
+    merged.campaign = merged.campaign.hunting("my {pack} {out}").expect("a command");
+    let reason = |key: &str, clause: &str, explained: u64| ReasonRecord {
+        mistakes: vec![key.into()],
+        clause: clause.into(),
+        wrong: 4,
+        explained,
+        right: 90,
+        broken: 4 - explained,
+    };
+    // Eight scenes with wrong rays: of two terrains in four parts.
+    merged.terrains[0].parts[0].reasons = vec![reason("scaled", "lengths are times 2", 4)];
+    merged.terrains[1].parts[2].reasons = vec![reason("scaled", "lengths are times 3", 3)];
+    merged.terrains[1].parts[3].reasons = vec![
+        reason("rows_reversed", "rows are reversed", 4),
+        reason("rows_reversed", "rows are reversed", 4),
+    ];
+    let screen = campaign_screen(&merged).split_whitespace().collect::<Vec<_>>().join(" ");
+    for words in [
+        "Why: in 2 of 8 scenes with wrong rays, 87.50 % of them agree if lengths are times 2 (the numbers are those of \
+         terrain 0 own; other scenes have others), and 1 of 180 right rays breaks.",
+        "Why: in 1 of 8 scenes with wrong rays, 100 % of them agree if rows are reversed, and no right ray breaks.",
+    ] {
+        assert!(screen.contains(words), "{screen}");
+        assert!(page(&merged, &[]).contains(words), "{words}");
+    }
+    let json: Value = serde_json::from_str(&campaign_json(&merged)).unwrap();
+    assert_eq!(json["reasons"][0]["numbers_differ"], true);
+    assert_eq!([&json["reasons"][1]["scenes"], &json["reasons"][1]["explained"]], [1, 8]);
+    let schema = include_str!("../../../../../docs/formats/campaign.schema.json");
+    assert_eq!(schema_faults(&serde_json::from_str(schema).unwrap(), &json), [""; 0]);
 }

@@ -40,6 +40,7 @@ fn record(terrain: u64) -> TerrainRecord {
             quantity: Quantity::Range,
             what: "1 m and 2 m".into(),
         }],
+        reasons: Vec::new(),
         candidate: None,
         failed: None,
     };

@@ -264,6 +264,13 @@ pub(crate) fn names_not_given(report: &CandidateReport) -> Vec<String> {
     items_not_given(&report.check).into_iter().map(|(item, _)| name_of(item)).collect()
 }
 
+/// The mistakes that explain why candidates are wrong, a sentence for each that has any.
+pub(crate) fn whys(validation: &Validation) -> impl Iterator<Item = String> {
+    validation.candidates().iter().filter_map(|CandidateReport { candidate, diagnosis, .. }| {
+        Some(format!("Why {} is wrong: {}.", candidate.name, diagnosis.as_ref()?.sentence()))
+    })
+}
+
 /// A candidate in one line: the rays, images and radiance maps that are wrong or fit.
 pub(crate) fn line(report: &CandidateReport) -> String {
     let coarse = report.candidate.recorded.coarseness();

@@ -1,5 +1,6 @@
 //! The scoreboard for programs: the key `panel` of `summary.json`.
 
+use raypencil_diagnosis::Diagnosis;
 use raypencil_judge::{Check, Class, Item, ItemTally, ListedDefect, Recorded, key_of, unit_of};
 use raypencil_pack::{not_given, rays_not_given};
 use raypencil_scene_io::{Subject, probe_command};
@@ -33,6 +34,7 @@ struct CheckSummary {
     images: Vec<ImageSummary>,
     radiance: Vec<RadianceSummary>,
     misses: Vec<Value>,
+    diagnosis: Option<Value>,
 }
 
 #[derive(Serialize)]
@@ -99,6 +101,7 @@ pub(crate) fn scoreboard_summary(validation: &Validation) -> Option<ScoreboardSu
         let mut summary = check_summary(subject, name, &report.check, recorded);
         summary.is_candidate = true;
         summary.passes = report.passes();
+        summary.diagnosis = report.diagnosis.as_ref().map(Diagnosis::to_json);
         summary.images = report.images.iter().map(image_summary).collect();
         summary.radiance = report.radiance.iter().map(radiance_summary).collect();
         let of_miss = |(index, wrong): (usize, &ListedDefect)| {
@@ -143,6 +146,7 @@ fn check_summary(subject: &Subject, name: &str, check: &Check, recorded: Option<
         images: Vec::new(),
         radiance: Vec::new(),
         misses: Vec::new(),
+        diagnosis: None,
     }
 }
 

@@ -297,16 +297,18 @@ fn warnings(validation: &Validation, room: Room) -> String {
     text
 }
 
-/// What was not compared, or why the verdict is none.
+/// What was not compared, why the verdict is none, and why candidates are wrong.
 fn remarks(validation: &Validation) -> Vec<String> {
     let counts = validation.counts();
-    match Verdict::of(validation) {
+    let mut remarks = match Verdict::of(validation) {
         Verdict::Agree if counts.not_compared > 0 => {
             vec![format!("{} not compared: one side has no maps.", rays(validation, counts.not_compared))]
         }
         Verdict::NothingCompared | Verdict::NothingHit => vec![explanation(validation)],
         _ => Vec::new(),
-    }
+    };
+    remarks.extend(candidates::whys(validation));
+    remarks
 }
 
 /// The worst defects, with the commands that show them.

@@ -1,7 +1,11 @@
 //! Reasons sensor by sensor: each mistake in one of them, beside another one in another, and what must have no reason.
 
+use std::sync::Arc;
+
 use raypencil_diagnosis::Mistake;
-use raypencil_scene::{Maybe, SensorId};
+use raypencil_judge::Recorded;
+use raypencil_referee::ExactRenderer;
+use raypencil_scene::{Camera, Maybe, Mounted, Precision, Renderer, Request, Scene, SensorId};
 
 use super::candidates::*;
 use super::wrong_renderers::wrong::Wrong;
@@ -79,12 +83,12 @@ fn one_mistake_in_two_sensors_is_one_reason() {
 }
 
 #[test]
-fn a_sensor_without_a_reason_is_said_to_have_another_cause() {
+fn a_sensor_without_a_reason_is_said_to_have_none() {
     let wrong = made(few_pyramids(), &[("half a pixel in x", CAMERA), ("every fifth is lost", BEAM)]);
     let found = few_pyramids().diagnosis(&wrong.candidate).unwrap();
     assert_eq!(found.unexplained, [BEAM]);
     assert!(
-        found.sentence().ends_with("the wrong rays of beam-1 have another cause"),
+        found.sentence().ends_with("for the wrong rays of beam-1 no reason is known"),
         "{}",
         found.sentence()
     );
@@ -173,4 +177,44 @@ fn numbers_are_told_with_their_value_and_unit() {
     assert_eq!(told("half a pixel in x").to_string(), "cx is 19.5 in place of 20 px");
     let Mistake::Rounded { quantum, .. } = told("lengths rounded") else { panic!() };
     assert_eq!(quantum, 1e-3);
+}
+
+/// What a program says that renders the bench with another camera: its beams meet what they should.
+fn with_camera(bench: &Bench, change: impl Fn(&mut Mounted<Camera>)) -> Recorded {
+    let mut camera = *bench.scene.camera();
+    change(&mut camera);
+    let (mesh, beams) = (Arc::clone(bench.scene.mesh()), bench.scene.beams().to_vec());
+    let other = Scene::new(mesh, camera, beams, bench.scene.atmosphere(), bench.scene.flux_model()).unwrap();
+    let output = ExactRenderer.render(&other, &Request::EVERYTHING);
+    Recorded::of_output("mine", bench.scene, &output, Precision::F64)
+}
+
+#[test]
+fn the_light_of_right_beams_is_explained_by_the_camera_that_sees_it() {
+    let bench = few_pyramids();
+    let moved = |by: [f64; 2]| {
+        with_camera(bench, |camera| {
+            camera.sensor.principal_point[0] += by[0];
+            camera.sensor.principal_point[1] += by[1];
+        })
+    };
+    let all = |key: &str| vec![format!("camera, beam-0, beam-1: {key}")];
+    for by in [[-0.5, 0.0], [0.25, 0.0], [0.0, 0.5]] {
+        assert_eq!(bench.reasons(&moved(by)), all("principal_point"), "{by:?}");
+    }
+    let longer = with_camera(bench, |camera| camera.sensor.focal_length *= 1.01);
+    assert_eq!(bench.reasons(&longer), all("focal_length"));
+    let lower = with_camera(bench, |camera| camera.scene_from_sensor.position.z -= 0.125);
+    assert_eq!(bench.reasons(&lower), all("position"));
+    let found = bench.diagnosis(&moved([-0.5, 0.0])).unwrap();
+    assert!(found.unexplained.is_empty() && found.reasons[0].is_everywhere);
+    assert!(found.reasons[0].share() > 0.98, "{}", found.sentence());
+
+    // A beam whose light is wrong beside that has no reason: its flux is a third too high.
+    let mut brighter = moved([-0.5, 0.0]);
+    let flux = brighter.answers.light[1].returns.flux.as_mut().unwrap();
+    flux.cells_mut().iter_mut().for_each(|flux| *flux *= 4.0 / 3.0);
+    let found = bench.diagnosis(&brighter).unwrap();
+    assert_eq!(bench.reasons(&brighter)[0], "camera, beam-0: principal_point");
+    assert!(found.reasons.iter().all(|one| !one.sensors.contains(&BEAM) || one.sensors.len() == 1));
 }

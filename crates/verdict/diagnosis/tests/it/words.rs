@@ -158,7 +158,7 @@ fn each_reason_names_its_sensors_and_the_others_have_another_cause() {
         "100 % of the wrong rays of the camera agree if cx is 46.25 in place of 46.75 px (docs/guide/reasons.md, \
          Numbers of a sensor), and no right ray breaks; 100 % of the wrong rays of beam-0 and beam-1 agree if rays hit \
          the backs of faces: a hit has n.q < 0 (docs/guide/for-implementers.md, The contract for rays), and no right \
-         ray breaks; the wrong rays of beam-2 have another cause"
+         ray breaks; for the wrong rays of beam-2 no reason is known"
     );
     assert_eq!(found.of(second), Some(&found.reasons[1]));
     assert_eq!(found.of(SensorId::Beam(2)), None);

@@ -11,6 +11,9 @@ use raypencil_scene::{Beam, Camera, Mounted, Pose, Profile};
 use crate::bench::faces::{AddedFaces, Side, Triangle, showing};
 use crate::bench::lattice::tuned;
 
+/// How many beams of a bench, the last ones, pass limits at distances down to what rounding excuses.
+pub const BITING_BEAMS: usize = 3;
+
 /// Columns and rows of the beam for all limits but the image's border.
 const CELLS: [u32; 2] = [24, 10];
 
@@ -163,7 +166,10 @@ fn limits_of_corner(borders: [Across; 2]) -> Vec<(Limit, f64)> {
 
 /// The biting beams: one for all limits but the image's border, and one before each of two corners of the image. Their faces are added
 /// to `faces`.
-pub(super) fn biting_beams(camera: &Mounted<Camera>, faces: &mut AddedFaces) -> [Mounted<Beam>; 3] {
+pub(super) fn biting_beams(
+    camera: &Mounted<Camera>,
+    faces: &mut AddedFaces,
+) -> [Mounted<Beam>; BITING_BEAMS] {
     let image = ImageAtDepth::of(&camera.sensor);
     let [x, y] = [0, 1].map(|axis: usize| image.middle(axis) + PLACE[axis] * image.half(axis));
     let corner = |sign: [f64; 2]| {
@@ -248,9 +254,8 @@ fn beam_for(
     for &(limit, size) in limits {
         // The first free pencils before which such faces are found.
         let tubes = free.iter().map(|&cell| Tube::new(&pose, &beam, of_camera, sensor, cell, spacing));
-        let suited = tubes.enumerate().filter(|(_, tube)| tube.can_reach(limit)).take(MAX_TRIED);
-        let found = suited.map(|(place, tube)| (place, tube.faces_of(limit, size)));
-        let found = found.into_iter().find_map(|(place, of_limit)| Some((place, of_limit?)));
+        let mut suited = tubes.enumerate().filter(|(_, tube)| tube.can_reach(limit)).take(MAX_TRIED);
+        let found = suited.find_map(|(place, tube)| Some((place, tube.faces_of(limit, size)?)));
         if let Some((place, of_limit)) = found {
             free.remove(place);
             faces.extend_scene(of_limit);

@@ -24,6 +24,7 @@ use std::sync::Arc;
 use raypencil_scene::{Beam, Camera, Mounted, Scene, SceneError};
 
 use crate::bench::beams::bench_beams;
+pub use crate::bench::bites::BITING_BEAMS;
 use crate::bench::bites::biting_beams;
 use crate::bench::faces::AddedFaces;
 use crate::bench::furniture::{backward_beam, before_beam, before_camera};
@@ -40,15 +41,10 @@ pub(crate) enum Edition {
     Second,
 }
 
-/// Whether a scene ends in a bench: its last beams are of those sizes.
+/// Whether a scene ends in a bench: its last beams are those that [`with_bench`] adds for its camera.
 pub(crate) fn has_bench(scene: &Scene) -> bool {
-    let sizes = |beams: &[Mounted<Beam>]| -> Vec<(u32, u32)> {
-        beams.iter().map(|beam| (beam.sensor.columns, beam.sensor.rows)).collect()
-    };
     let Some(first) = scene.beams().len().checked_sub(BENCH_BEAMS) else { return false };
-    let mut faces = AddedFaces::default();
-    let own = added_beams(scene.camera(), Edition::Second, &mut faces);
-    sizes(&scene.beams()[first..]) == sizes(&own)
+    scene.beams()[first..] == added_beams(scene.camera(), Edition::Second, &mut AddedFaces::default())
 }
 
 /// The beams of a bench, each before its faces.

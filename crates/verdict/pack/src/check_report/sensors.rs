@@ -1,6 +1,6 @@
 //! A check of sensors in the form of every check.
 
-use raypencil_diagnosis::Reason;
+use raypencil_diagnosis::{Diagnosis, Reason};
 use raypencil_judge::{
     Answers, Check, Class, Item, ItemTally, Largest, Recorded, SensorResult, key_of, listed_defects, name_of,
     unit_of,
@@ -66,26 +66,6 @@ fn findings(checked: &Checked) -> CheckFindings {
         let name = set.name.clone();
         Some(ItemFindings { name, by_class: set.by_class, worst_ratio: worst_ratio.cloned(), ..hits })
     });
-    let reason_json = |reason: &Reason| {
-        let mistakes = reason.mistakes.iter().map(|mistake| {
-            let (file, place) = mistake.docs();
-            json!({ "name": mistake.key(), "what": mistake.to_string(), "docs": format!("{file}, {place}") })
-        });
-        json!({
-            "bundles": reason.sensors.iter().map(ToString::to_string).collect::<Vec<_>>(),
-            "explained": reason.explained,
-            "wrong": reason.wrong,
-            "broken": reason.broken,
-            "right": reason.right,
-            "mistakes": mistakes.collect::<Vec<_>>(),
-        })
-    };
-    let diagnosis_json = diagnosis.as_ref().map(|found| {
-        json!({
-            "reasons": found.reasons.iter().map(reason_json).collect::<Vec<_>>(),
-            "unexplained": found.unexplained.iter().map(ToString::to_string).collect::<Vec<_>>(),
-        })
-    });
     let told = sharpness::told(checked);
     let of_form = [
         ("scene", json!({ "name": subject.name, "sha256": subject.sha256 })),
@@ -96,7 +76,7 @@ fn findings(checked: &Checked) -> CheckFindings {
                 "answers": verified.answers, "of": verified.of, "seed": verified.seed, "ray_files": verified.rays,
             }),
         ),
-        ("diagnosis", diagnosis_json.into()),
+        ("diagnosis", diagnosis.as_ref().map(Diagnosis::to_json).into()),
         ("sharpness", sharpness::to_json(&told)),
         ("unknown_channels", recorded.unknown.clone().into()),
     ];

@@ -98,10 +98,10 @@ pub(super) fn sentence(told: &[Told], is_published: bool) -> Option<String> {
         })
         .collect();
     let source = if is_published { "" } else { " (by the pack's own word; --verify measures it)" };
-    let known = told.iter().filter(|told| told.noticed.is_some()).count();
-    if known == 0 {
+    if told.iter().all(|told| told.noticed.is_none()) {
         return None;
     }
+    let known = told.len();
     let common = match common.as_slice() {
         [] => "Mistakes".to_string(),
         some => format!("Mistakes such as {}", some.join(" or ")),

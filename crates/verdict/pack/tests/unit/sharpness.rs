@@ -6,7 +6,7 @@ use raypencil_scene::{Image, Precision, Renderer, Request, Scene, Silent};
 use raypencil_scene_io::{Overrides, Subject, load, load_text, scene_sha256};
 
 use super::*;
-use crate::bench::{Edition, with_bench_of};
+use crate::bench::{Edition, has_bench, with_bench_of};
 use crate::blind::blind_scene_of;
 use crate::{PackKind, PackLabel, check_pack, write_pack, write_questions};
 
@@ -45,6 +45,26 @@ fn the_first_bench_lets_large_tolerances_pass_and_the_second_none() {
         let size = noticed.expect("a size");
         assert!(["1e", "2e", "5e"].iter().any(|digit| format!("{size:e}").starts_with(digit)), "{size:e}");
         assert!(size <= slack.largest());
+    }
+}
+
+#[test]
+fn a_bench_is_known_by_its_beams_and_not_by_their_sizes() {
+    for pack in ["facets", "hard", "pyramids"] {
+        let file = format!("{}/../../../data/packs/{pack}/scene.toml", env!("CARGO_MANIFEST_DIR"));
+        let scene = load(&file, &Overrides::default()).expect("a scene").scene;
+        assert!(has_bench(&scene), "{pack}");
+        // The same beams in another order, and the last one a millimetre beside its place.
+        let with = |beams| {
+            let (mesh, air) = (Arc::clone(scene.mesh()), scene.atmosphere());
+            Scene::new(mesh, *scene.camera(), beams, air, scene.flux_model()).expect("a scene")
+        };
+        let mut beams = scene.beams().to_vec();
+        beams.rotate_right(1);
+        assert!(!has_bench(&with(beams)), "{pack}");
+        let mut beams = scene.beams().to_vec();
+        beams.last_mut().expect("a beam").scene_from_sensor.position.x += 1e-3;
+        assert!(!has_bench(&with(beams)), "{pack}");
     }
 }
 

@@ -110,6 +110,36 @@ fn shards_in_any_order_are_the_whole_campaign() {
 }
 
 #[test]
+fn a_campaign_of_some_parts_or_of_small_grounds_is_one_of_its_own() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    let rays_of = |name: &str| {
+        let json: serde_json::Value = serde_json::from_str(&summary(folder, name)).unwrap();
+        ["own", "paper", "aimed", "lattice"].map(|part| json["parts"][part]["compared"].as_u64().unwrap())
+    };
+    passes(folder, "campaign --terrains 2 --seed 11 -o all");
+    passes(folder, "campaign --terrains 2 --seed 11 --parts lattice,aimed -o some");
+    let page = fs::read_to_string(folder.join("some/report.html")).unwrap();
+    assert!(page.contains("campaign --terrains 2 --parts aimed,lattice --seed 11 -o DIR"), "{page}");
+    let [_, _, aimed, lattice] = rays_of("all");
+    assert_eq!(rays_of("some"), [0, 0, aimed, lattice]);
+    // Of a ground that is too large only the lattice is left.
+    passes(folder, "campaign --terrains 2 --seed 11 --max-faces 1 -o small");
+    assert_eq!(rays_of("small"), [0, 0, 0, lattice]);
+    is_trouble(
+        folder,
+        "campaign --terrains 2 --seed 11 -o some",
+        &["--parts aimed,lattice", "a folder of its own"],
+    );
+    is_trouble(
+        folder,
+        "campaign --parts paper --candidate-command true{pack}{out}",
+        &["--parts paper", "scanline alone"],
+    );
+    is_trouble(folder, "campaign --parts all", &["own, paper, aimed, lattice"]);
+}
+
+#[test]
 fn an_interrupted_campaign_is_resumed() {
     let folder = TempDir::new().unwrap();
     let folder = folder.path();
@@ -219,6 +249,17 @@ fn another_program_is_hunted() {
             .map(String::from);
     screen_of(folder, &words);
     assert_eq!(check(&answer).status.code(), Some(0));
+    // A program in single precision is right by its own bounds, and wrong by those of double precision.
+    let single = program(folder, "single.sh", "");
+    let off = "scene.toml\" --format npy --set \"camera.principal_point_px=[24.0000001,20]\"";
+    let text = fs::read_to_string(folder.join("single.sh")).unwrap().replace("scene.toml\"", off);
+    fs::write(folder.join("single.sh"), text).unwrap();
+    let words = ["campaign", "--scenes", "scenes", "--candidate-command", &single, "--parts", "own"];
+    for (arithmetic, code) in [("f64", 1), ("f32", 0)] {
+        // The same folder: its record is made again.
+        let output = raypencil(folder, &[&words[..], &["-o", "double", "--arithmetic", arithmetic]].concat());
+        assert_eq!(output.status.code(), Some(code), "{}", super::text(&output.stdout));
+    }
     // One that dies says why; one that answers nothing; one that is no program.
     let output = hunt(&program(folder, "dies.sh", "echo out of luck >&2\nexit 3"), "dies");
     assert_eq!(output.status.code(), Some(1));

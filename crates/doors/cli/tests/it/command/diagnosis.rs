@@ -7,7 +7,7 @@ use raypencil::Image;
 use raypencil::io::{ExrMap, Raster};
 
 use super::check::{assert_fails, assert_passes, check, edit, folder, reals};
-use super::{assert_trouble, text};
+use super::{assert_trouble, screen, text};
 
 /// The camera's answers alone are left.
 fn camera_alone(folder: &Path) {
@@ -140,4 +140,40 @@ fn an_error_of_one_ray_has_no_explanation() {
     let json: serde_json::Value = serde_json::from_str(&text(&output.stdout)).expect("JSON");
     assert_eq!(json["verdict"], "defects");
     assert!(json["diagnosis"].is_null(), "{}", json["diagnosis"]);
+}
+
+#[test]
+fn a_validation_and_a_campaign_say_why_too() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let folder = folder.path();
+    fs::create_dir(folder.join("scenes")).expect("a folder");
+    let small = "version = 1\ncamera = { width_px = 48, height_px = 40, pixel_pitch_um = 200 }\n\
+                 beam = [{ columns = 64, rows = 2, thickness_mm = 60 }]\n";
+    fs::write(folder.join("scenes/small.toml"), small).expect("a scene");
+    // A program with another principal point: the light of its beams, which are right, lands elsewhere too.
+    let render = "render scenes/small.toml --with tracer -o mine --set camera.principal_point_px=[23.5,20]";
+    screen(folder, &render.split(' ').collect::<Vec<_>>(), 0);
+    let line = ["validate", "scenes/small.toml", "--candidate", "mine", "-o", "out"];
+    let found = screen(folder, &line, 1).split_whitespace().collect::<Vec<_>>().join(" ");
+    let why =
+        "Why mine is wrong: 100 % of the wrong rays agree if cx is 23.5 in place of 24 px";
+    assert!(found.contains(why), "{found}");
+    let read = |path: &str| fs::read_to_string(folder.join(path)).expect("a report");
+    assert!(read("out/report.html").contains(why) && read("out/summary.md").contains(why));
+    let json: serde_json::Value = serde_json::from_str(&read("out/summary.json")).expect("JSON");
+    let of = |index: usize| &json["panel"]["renderers"][index]["diagnosis"];
+    assert!(of(0).is_null() && of(1).is_null(), "{json:#}");
+    assert_eq!(of(2)["reasons"][0]["bundles"], serde_json::json!(["camera", "beam-0"]));
+
+    // The same in a campaign. In its scene of narrow beams nobody looks through the camera.
+    let program = format!(
+        "{} render {{pack}}/scene.toml --with tracer -o {{out}} --set camera.principal_point_px=[23.5,20]",
+        env!("CARGO_BIN_EXE_raypencil")
+    );
+    let line = ["campaign", "--scenes", "scenes", "--candidate-command", &program, "-o", "hunt"];
+    let found = screen(folder, &line, 1).split_whitespace().collect::<Vec<_>>().join(" ");
+    let why = "Why: in terrain 0 own, the only scene with wrong rays, 100 % of them agree if cx is 23.5 in place of 24 px";
+    assert!(found.contains(why), "{found}");
+    let json: serde_json::Value = serde_json::from_str(&read("hunt/summary.json")).expect("JSON");
+    assert_eq!(json["reasons"][0]["explained"], json["reasons"][0]["wrong"]);
 }

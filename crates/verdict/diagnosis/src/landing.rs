@@ -1,0 +1,64 @@
+//! What another camera does to the light of beams: a pencil meets what it meets, and its light lands elsewhere.
+
+use std::sync::Arc;
+
+use raypencil_judge::{Check, GroundTruth, Recorded, check_rays};
+use raypencil_scene::{Camera, Mounted, Place, Pose, Scene, SensorId, Silent};
+
+use crate::rules::Numbers;
+use crate::sample::WrongRays;
+use crate::tally::{MIN_CONFIRMING_RAYS, Tally};
+
+/// What numbers of the camera explain of those beams whose hits are right.
+///
+/// The scene with that camera has exact answers of its own, and the judge holds the beams' rays to them. A beam of which they
+/// explain too little is left out, and one whose pencils meet something else.
+pub(crate) fn explained_by_camera(
+    truth: &GroundTruth<'_>,
+    recorded: &Recorded,
+    check: &Check,
+    sensors: &[SensorId],
+    numbers: &Numbers,
+) -> Vec<(SensorId, Tally)> {
+    let wrong_of = |sensor: &SensorId| (*sensor, WrongRays::of(check, &[*sensor]));
+    let beams = sensors.iter().filter(|sensor| **sensor != SensorId::Camera).map(wrong_of);
+    let beams: Vec<(SensorId, WrongRays)> = beams.filter(|(_, wrong)| wrong.of_hits.is_empty()).collect();
+    if beams.is_empty() || *numbers == Numbers::SCENE {
+        return Vec::new();
+    }
+    let Some(scene) = with_camera(truth.scene(), numbers) else { return Vec::new() };
+    let truth = GroundTruth::certified(&scene, &Silent);
+    let is_asked = |place: Place| beams.iter().any(|(beam, _)| place.sensor == *beam);
+    let check = check_rays(&truth, recorded, &is_asked, &Silent);
+    let explained = |(beam, wrong): &(SensorId, WrongRays)| {
+        let after = WrongRays::of(&check, &[*beam]);
+        let left = wrong.all.intersection(&after.all).count();
+        let tally = Tally {
+            explained: (wrong.all.len() - left) as u64,
+            wrong: wrong.all.len() as u64,
+            broken: (after.all.len() - left) as u64,
+            right: wrong.right(),
+        };
+        tally.is_enough(MIN_CONFIRMING_RAYS, [tally.wrong, tally.right]).then_some((*beam, tally))
+    };
+    beams.iter().filter_map(explained).collect()
+}
+
+/// The scene with the camera that has these numbers; `None`: no scene can have it.
+fn with_camera(scene: &Scene, numbers: &Numbers) -> Option<Scene> {
+    let Mounted { scene_from_sensor: pose, sensor: camera } = *scene.camera();
+    let Numbers { offset: [dx, dy], focal, turn, shift, .. } = *numbers;
+    let [cx, cy] = camera.principal_point;
+    // A ray through another point of its pixel is the ray of a camera with another principal point.
+    let sensor =
+        Camera { principal_point: [cx - dx, cy - dy], focal_length: camera.focal_length * focal, ..camera };
+    let angle = turn.length();
+    let rotation = match angle == 0.0 {
+        true => pose.rotation,
+        false => pose.rotation * Pose::from_axis_angle(turn / angle, angle).rotation,
+    };
+    let pose = Pose { position: pose.position + shift, rotation };
+    let camera = Mounted { scene_from_sensor: pose, sensor };
+    let (mesh, beams) = (Arc::clone(scene.mesh()), scene.beams().to_vec());
+    Scene::new(mesh, camera, beams, scene.atmosphere(), scene.flux_model()).ok()
+}
