@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::pattern::PatternRays;
+use crate::pattern::{Mounting, PatternRays};
 use crate::{CastRay, Pose, RaySet, SceneError, Sides};
 
 /// Greatest length of a ray set's name.
@@ -35,8 +35,8 @@ pub struct NamedRaySet {
     pub weights: Option<Vec<f64>>,
     /// Elevations of the channels of a spinning head along the second dimension, degrees.
     pub elevations_deg: Option<Vec<f64>>,
-    /// Up direction of the pattern at its first pose, in the mesh's frame.
-    pub up: DVec3,
+    /// Where the pattern's own frame stands in the mesh's.
+    pub mounting: Mounting,
 }
 
 impl NamedRaySet {
@@ -46,9 +46,14 @@ impl NamedRaySet {
     /// Names the first ray that is wrong, or the name if it is none.
     pub fn new(name: &str, pattern: PatternRays, sides: Sides) -> Result<Self, SceneError> {
         Self::check_name(name)?;
-        let PatternRays { shape, rays, times, weights, elevations_deg, up } = pattern;
+        let PatternRays { shape, rays, times, weights, elevations_deg, mounting } = pattern;
         let set = RaySet::new(rays, sides)?;
-        Ok(Self { name: name.to_string(), shape, set, times, weights, elevations_deg, up })
+        Ok(Self { name: name.to_string(), shape, set, times, weights, elevations_deg, mounting })
+    }
+
+    /// Up direction of the pattern at its first pose, in the mesh's frame.
+    pub fn up(&self) -> DVec3 {
+        self.mounting.first().rotate(DVec3::Z)
     }
 
     /// The set moved with a frame that it is fixed to: origins are rotated and shifted by the pose, directions rotated.
@@ -62,7 +67,7 @@ impl NamedRaySet {
             ..*ray
         };
         let set = RaySet::new(self.set.rays().iter().map(placed).collect(), self.set.sides())?;
-        Ok(Self { set, up: pose.rotate(self.up), ..self.clone() })
+        Ok(Self { set, mounting: self.mounting.moved_by(pose), ..self.clone() })
     }
 
     /// Refuses what is no name of a set.

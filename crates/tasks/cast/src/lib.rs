@@ -45,7 +45,7 @@ mod warnings;
 mod write;
 
 pub use answers::{Answers, FirstHit, GroupAtT, Questions, cast, cast_with};
-pub use cloud::{write_pcd, write_ply};
+pub use cloud::{CloudFrame, write_pcd, write_ply};
 pub use comparison::{
     CastCounts, CastValue, Comparison, RayVerdict, Stated, ValueTally, Wrong, compare, compare_with,
     comparison_headline, comparison_json, comparison_text, write_comparison,

@@ -134,7 +134,7 @@ impl View {
 pub fn top_picture(answers: &Answers, set: &NamedRaySet) -> Option<Drawing> {
     const SIDE: usize = 900;
     const SIDE_PX: f64 = SIDE as f64;
-    let view = View::along(set.up);
+    let view = View::along(set.up());
     let points = || answers.hits().map(|hit| view.of(hit.point));
     let scale = Scale::of(points().map(|point| point.z))?;
     let origin = view.of(set.set.rays().first()?.origin);

@@ -12,7 +12,7 @@ use raypencil_scene::{CastRay, NamedRaySet, Side, Sides, Triangles};
 use serde_json::{Value, json};
 
 use crate::answers::{Answers, FirstHit, GroupAtT};
-use crate::cloud::{write_pcd, write_ply};
+use crate::cloud::{CloudFrame, write_pcd, write_ply};
 use crate::range_picture::{range_picture, top_picture};
 use crate::warnings::cast_warnings;
 
@@ -80,6 +80,7 @@ pub fn write_answers(
 /// | `time.npy`, if the set has times | f8: time at which each ray is fired, seconds |
 /// | `weight.npy`, if rays are parts of beams | f8, (k): shares of a beam's power along the last dimension |
 /// | `cloud.ply`, `cloud.pcd` | the points: [`write_ply`], [`write_pcd`] |
+/// | `cloud-sensor.pcd`, `cloud-start.pcd` | the same in frames of the sensor: [`CloudFrame`] |
 /// | `range.png`, for two dimensions, and `top.png` | pictures, if anything is hit: [`range_picture`], [`top_picture`] |
 ///
 /// # Errors
@@ -102,7 +103,11 @@ pub fn write_set(
         more.write("weight", &[weights.len() as u64], weights)?;
     }
     write_ply(folder.join("cloud.ply"), answers)?;
-    write_pcd(folder.join("cloud.pcd"), answers, set)?;
+    let mut clouds = vec!["cloud.ply"];
+    for frame in CloudFrame::of(&set.mounting) {
+        write_pcd(folder.join(frame.file()), answers, set, *frame)?;
+        clouds.push(frame.file());
+    }
     let mut pictures = Vec::new();
     let drawings = [("range.png", range_picture(answers, set)), ("top.png", top_picture(answers, set))];
     for (name, drawing) in drawings {
@@ -111,7 +116,7 @@ pub fn write_set(
         pictures.push(name);
     }
     document["rays"]["name"] = json!(set.name);
-    document["clouds"] = json!(["cloud.ply", "cloud.pcd"]);
+    document["clouds"] = json!(clouds);
     document["pictures"] = json!(pictures);
     finish(summary, arrays, document)
 }

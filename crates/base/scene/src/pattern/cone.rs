@@ -107,7 +107,7 @@ impl Cone {
             times: pattern.times.as_ref().map(repeated),
             weights: Some(self.weights()),
             elevations_deg: pattern.elevations_deg.clone(),
-            up: pattern.up,
+            mounting: pattern.mounting.clone(),
         })
     }
 }

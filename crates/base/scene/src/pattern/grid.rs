@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{PatternRays, check_ranges, check_rays, direction, sincos_deg};
+use super::{Mounting, PatternRays, check_ranges, check_rays, direction, sincos_deg};
 use crate::error::{check_count, check_range};
 use crate::{CastRay, SceneError};
 
@@ -103,6 +103,13 @@ impl Grid {
             }
         }
         let shape = vec![self.rows, self.columns];
-        Ok(PatternRays { shape, rays, times: None, weights: None, elevations_deg: None, up: DVec3::Z })
+        Ok(PatternRays {
+            shape,
+            rays,
+            times: None,
+            weights: None,
+            elevations_deg: None,
+            mounting: Mounting::HERE,
+        })
     }
 }

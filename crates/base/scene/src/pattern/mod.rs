@@ -44,8 +44,8 @@ pub struct PatternRays {
     pub weights: Option<Vec<f64>>,
     /// Elevations of the channels of a spinning head, one for each entry of the second dimension, degrees.
     pub elevations_deg: Option<Vec<f64>>,
-    /// Up direction of the pattern: its z axis, in the frame of the rays.
-    pub up: DVec3,
+    /// Where the pattern's own frame stands in that of the rays.
+    pub mounting: Mounting,
 }
 
 impl PatternRays {

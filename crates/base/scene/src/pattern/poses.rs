@@ -120,6 +120,37 @@ pub enum Mounting {
 }
 
 impl Mounting {
+    /// The pattern's frame is the mesh's.
+    pub const HERE: Self = Self::Fixed(Pose::IDENTITY);
+
+    /// The first pose of all.
+    pub fn first(&self) -> Pose {
+        match self {
+            Self::Fixed(pose) => *pose,
+            Self::Moving(poses) => poses.poses[0].pose,
+        }
+    }
+
+    /// The pose at a time; `None` at a time for which there is none. Who stands still stands so at any time.
+    pub fn at(&self, time_s: f64) -> Option<Pose> {
+        match self {
+            Self::Fixed(pose) => Some(*pose),
+            Self::Moving(poses) => poses.at(time_s),
+        }
+    }
+
+    /// The same in a frame in which its own frame has this pose.
+    #[must_use]
+    pub fn moved_by(&self, frame: &Pose) -> Self {
+        match self {
+            Self::Fixed(pose) => Self::Fixed(*frame * *pose),
+            Self::Moving(TimedPoses { poses }) => {
+                let moved = |one: &TimedPose| TimedPose { pose: *frame * one.pose, ..*one };
+                Self::Moving(TimedPoses { poses: poses.iter().map(moved).collect() })
+            }
+        }
+    }
+
     /// The pattern in the mesh's frame. `field` names it in messages.
     ///
     /// # Errors
@@ -135,11 +166,7 @@ impl Mounting {
             Self::Moving(_) if pattern.times.is_none() => pattern.starting_at(0.0),
             Self::Moving(_) => pattern,
         };
-        let first = match self {
-            Self::Fixed(pose) => *pose,
-            Self::Moving(poses) => poses.poses[0].pose,
-        };
-        pattern.up = first.rotate(pattern.up);
+        pattern.mounting = self.clone();
         match (self, &pattern.times) {
             (Self::Fixed(pose), _) => pattern.rays.iter_mut().for_each(|ray| *ray = placed(pose, ray)),
             (Self::Moving(poses), times) => {

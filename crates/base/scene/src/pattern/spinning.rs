@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{PatternRays, check_ranges, check_rays, direction, sincos_deg};
+use super::{Mounting, PatternRays, check_ranges, check_rays, direction, sincos_deg};
 use crate::error::{check_count, check_range};
 use crate::{CastRay, SceneError};
 
@@ -122,7 +122,7 @@ impl Spinning {
             times: Some(times),
             weights: None,
             elevations_deg: Some(self.channels.iter().map(|channel| channel.elevation_deg).collect()),
-            up: DVec3::Z,
+            mounting: Mounting::HERE,
         })
     }
 }

@@ -154,7 +154,7 @@ fn a_cone_has_its_edge_at_half_its_divergence_and_weights_of_1() {
         times: Some(vec![0.25]),
         weights: None,
         elevations_deg: None,
-        up: DVec3::Z,
+        mounting: Mounting::HERE,
     };
     for (rings, count) in [(1, 7), (2, 19), (3, 37)] {
         let cone = Cone { divergence_rad: 0.2, rings };

@@ -1,8 +1,9 @@
 //! Point clouds, byte by byte.
 
 use glam::DVec3;
-use raypencil_cast::{Questions, cast, write_pcd};
-use raypencil_scene::{CastRay, NamedRaySet, RaySet, Sides, Silent, Triangles};
+use raypencil_cast::{Answers, CloudFrame, Questions, cast, write_pcd};
+use raypencil_scene::pattern::{Mounting, Spinning, TimedPose, TimedPoses};
+use raypencil_scene::{CastRay, NamedRaySet, Pose, RaySet, Sides, Silent, Triangles};
 
 /// The ring of each point of a set with this shape, as its PCD file gives it.
 fn rings(shape: &[u64]) -> Vec<u16> {
@@ -19,22 +20,54 @@ fn rings(shape: &[u64]) -> Vec<u16> {
         times: None,
         weights: None,
         elevations_deg: None,
-        up: DVec3::Z,
+        mounting: Mounting::HERE,
     };
+    points_of(&answers, &set, CloudFrame::Mesh).1.iter().map(|point| point.ring).collect()
+}
+
+/// A point of a PCD file.
+#[derive(Debug, Clone, Copy)]
+struct Point {
+    place: [f32; 3],
+    intensity: f32,
+    ring: u16,
+    time: f32,
+    timestamp: f64,
+    channel: u16,
+    range: f32,
+    face: u32,
+}
+
+/// The header of a set's PCD file, and its points.
+fn points_of(answers: &Answers, set: &NamedRaySet, frame: CloudFrame) -> (String, Vec<Point>) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("cloud.pcd");
-    write_pcd(&path, &answers, &set).expect("a file");
+    write_pcd(&path, answers, set, frame).expect("a file");
     let bytes = std::fs::read(path).expect("the file");
     let text = b"DATA binary\n";
     let start =
         bytes.windows(text.len()).position(|at| at == text).expect("the end of the header") + text.len();
-    // x, y, z of 4 bytes each, `ring` of 2, `time` of 8, `range` of 4.
-    let points: Vec<&[u8]> = bytes[start..].chunks(12 + 2 + 8 + 4).collect();
-    points.iter().map(|point| u16::from_le_bytes([point[12], point[13]])).collect()
+    let header = String::from_utf8(bytes[..start].to_vec()).expect("text");
+    assert_eq!((bytes.len() - start) % 40, 0);
+    let points = bytes[start..].chunks_exact(40).map(|point| {
+        let four = |at: usize| -> [u8; 4] { point[at..at + 4].try_into().expect("four bytes") };
+        let two = |at: usize| u16::from_le_bytes([point[at], point[at + 1]]);
+        Point {
+            place: [0, 4, 8].map(|at| f32::from_le_bytes(four(at))),
+            intensity: f32::from_le_bytes(four(12)),
+            ring: two(16),
+            time: f32::from_le_bytes(four(18)),
+            timestamp: f64::from_le_bytes(point[22..30].try_into().expect("eight bytes")),
+            channel: two(30),
+            range: f32::from_le_bytes(four(32)),
+            face: u32::from_le_bytes(four(36)),
+        }
+    });
+    (header, points.collect())
 }
 
 #[test]
-fn the_ring_is_the_index_in_the_second_dimension() {
+fn without_elevations_the_ring_is_the_index_in_the_second_dimension() {
     assert_eq!(rings(&[4]), [0; 4]);
     assert_eq!(rings(&[2, 3]), [0, 1, 2, 0, 1, 2]);
     // Of a third dimension four rays each are in one ring.
@@ -42,4 +75,95 @@ fn the_ring_is_the_index_in_the_second_dimension() {
     assert_eq!(rings(&[2, 3, 4]), of_two_steps);
     let of_five = (0..3).flat_map(|ring| [ring; 10]).collect::<Vec<u16>>();
     assert_eq!(rings(&[1, 3, 2, 5]), of_five);
+}
+
+/// A floor of 200 x 200 m.
+fn floor() -> Triangles {
+    let corners = [[-100.0, -100.0], [100.0, -100.0], [100.0, 100.0], [-100.0, 100.0]];
+    let vertices = corners.map(|[x, y]| [x, y, 0.0]).to_vec();
+    Triangles::new(vertices, vec![[0, 1, 2], [0, 2, 3]]).expect("a floor")
+}
+
+fn head(mounting: Mounting, steps: u64) -> (NamedRaySet, Answers) {
+    let mut head = Spinning { steps, ..Spinning::preset("vlp-16").expect("a preset") };
+    head.channels.iter_mut().for_each(|channel| channel.vertical_m = 0.0);
+    let rays = head.rays("rays").expect("rays").starting_at(100.0);
+    let rays = mounting.place(rays, "rays").expect("poses");
+    let set = NamedRaySet::new("head", rays, Sides::Both).expect("a set");
+    let answers = cast(&floor(), set.set.rays(), Sides::Both, Questions::default(), &Silent);
+    (set, answers)
+}
+
+#[test]
+fn rings_ascend_with_the_elevation_and_channels_keep_the_order_of_the_manual() {
+    // The elevations of the VLP-16 are -15, 1, -13, 3, ...: laser 1 looks at +1 degree, which is the ninth from below.
+    let (set, answers) = head(Mounting::Fixed(Pose::from_position(DVec3::Z)), 3);
+    let (_, points) = points_of(&answers, &set, CloudFrame::Mesh);
+    let of_driver = [0, 8, 1, 9, 2, 10, 3, 11, 4, 12, 5, 13, 6, 14, 7, 15];
+    for (index, point) in points.iter().enumerate() {
+        assert_eq!((point.ring, usize::from(point.channel)), (of_driver[index % 16], index % 16));
+        // Firing k of a sequence is 2.304 us after the one before; a sequence takes 55.296 us.
+        let seconds = (index / 16) as f64 * 55.296e-6 + (index % 16) as f64 * 2.304e-6;
+        assert!((f64::from(point.time) - seconds).abs() < 1e-10, "{point:?}");
+        assert!((point.timestamp - 100.0 - seconds).abs() < 1e-13, "{point:?}");
+        assert_eq!(point.range.is_nan(), point.face == u32::MAX);
+        if !point.range.is_nan() {
+            // Over a floor the cosine is the height over the range: 1 / R^3 in all, for a height of 1 m.
+            let expected = 1.0 / (point.range * point.range * point.range);
+            assert!((point.intensity / expected - 1.0).abs() < 1e-5, "{point:?}");
+        }
+    }
+}
+
+#[test]
+fn points_stand_in_the_frame_that_the_header_says() {
+    // One metre up, turned by a quarter to the left, and three metres ahead.
+    let turned = Pose::from_axis_angle(DVec3::Z, std::f64::consts::FRAC_PI_2);
+    let pose = Pose { position: DVec3::new(3.0, 0.0, 1.0), ..turned };
+    let (set, answers) = head(Mounting::Fixed(pose), 1);
+    assert_eq!(CloudFrame::of(&set.mounting), [CloudFrame::Mesh, CloudFrame::Sensor]);
+    let (header, of_mesh) = points_of(&answers, &set, CloudFrame::Mesh);
+    assert!(
+        header.contains("frame of the mesh\n") && header.contains("VIEWPOINT 0 0 0 1 0 0 0\n"),
+        "{header}"
+    );
+    let (header, of_sensor) = points_of(&answers, &set, CloudFrame::Sensor);
+    assert!(header.contains("VIEWPOINT 3 0 1 0.707106781186547"), "{header}");
+    // Channel 0 looks 15 degrees down: the floor is 1 / tan 15 away, along x for the sensor and along y on the mesh.
+    let ahead = 1.0 / libm::tan(15.0_f64.to_radians());
+    let near = |place: [f32; 3], expected: [f64; 3]| {
+        place.iter().zip(expected).all(|(a, b)| (f64::from(*a) - b).abs() < 1e-5)
+    };
+    assert!(near(of_mesh[0].place, [3.0, ahead, 0.0]), "{:?}", of_mesh[0]);
+    assert!(near(of_sensor[0].place, [ahead, 0.0, -1.0]), "{:?}", of_sensor[0]);
+    // The viewpoint takes the one to the other.
+    for (of_sensor, of_mesh) in of_sensor.iter().zip(&of_mesh).filter(|(one, _)| !one.range.is_nan()) {
+        let point = pose * DVec3::from_array(of_sensor.place.map(f64::from));
+        assert!(near(of_mesh.place, point.to_array()), "{of_mesh:?}");
+    }
+}
+
+#[test]
+fn a_moving_head_distorts_its_own_cloud_and_not_that_of_its_start() {
+    // 10 m/s along x: one sequence of 55.296 us later the same point of the floor is 0.55 mm nearer.
+    let at = |time_s: f64, x: f64| TimedPose { time_s, pose: Pose::from_position(DVec3::new(x, 0.0, 1.0)) };
+    let poses = TimedPoses::new(vec![at(100.0, 0.0), at(101.0, 10.0)], "poses").expect("poses");
+    let (set, answers) = head(Mounting::Moving(poses), 1000);
+    let [of_mesh, of_sensor, of_start] = [CloudFrame::Mesh, CloudFrame::Sensor, CloudFrame::SensorAtStart]
+        .map(|frame| points_of(&answers, &set, frame).1);
+    for ((mesh, sensor), start) in
+        of_mesh.iter().zip(&of_sensor).zip(&of_start).filter(|((one, _), _)| !one.range.is_nan())
+    {
+        let moved = 10.0 * (mesh.timestamp - 100.0);
+        let x = |point: &Point| f64::from(point.place[0]);
+        assert!((x(mesh) - moved - x(sensor)).abs() < 1e-5, "{mesh:?} {sensor:?}");
+        assert!(
+            (x(mesh) - x(start)).abs() < 1e-5 && (start.place[2] + 1.0).abs() < 1e-6,
+            "{mesh:?} {start:?}"
+        );
+    }
+    // Placed with a vehicle, the poses go with it.
+    let vehicle = Pose::from_position(DVec3::new(0.0, 7.0, 0.0));
+    let placed = set.placed(&vehicle).expect("rays");
+    assert_eq!(placed.mounting.at(100.5).map(|pose| pose.position), Some(DVec3::new(5.0, 7.0, 1.0)));
 }

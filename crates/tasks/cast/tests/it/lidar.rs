@@ -122,26 +122,26 @@ fn clouds_hold_the_points_their_channels_and_their_times() {
     let (header, body) = parts(&std::fs::read(folder.path().join("cloud.pcd")).unwrap(), "DATA binary\n");
     for line in [
         "VERSION 0.7",
-        "FIELDS x y z ring time range",
-        "SIZE 4 4 4 2 8 4",
-        "TYPE F F F U F F",
-        "COUNT 1 1 1 1 1 1",
+        "FIELDS x y z intensity ring time timestamp channel range face",
+        "SIZE 4 4 4 4 2 4 8 2 4 4",
+        "TYPE F F F F U F F U F U",
+        "COUNT 1 1 1 1 1 1 1 1 1 1",
         "WIDTH 16",
         "HEIGHT 5",
         "POINTS 80",
     ] {
         assert!(header.contains(&line.to_string()), "{line}: {header:?}");
     }
-    assert_eq!(body.len(), 26 * 80);
+    assert_eq!(body.len(), 40 * 80);
     let times = set.times.as_ref().unwrap();
-    for (index, point) in body.chunks_exact(26).enumerate() {
-        assert_eq!(usize::from(u16::from_le_bytes(point[12..14].try_into().unwrap())), index % 16);
-        assert_eq!(double(point, 14), times[index]);
+    for (index, point) in body.chunks_exact(40).enumerate() {
+        assert_eq!(usize::from(u16::from_le_bytes(point[30..32].try_into().unwrap())), index % 16);
+        assert_eq!(double(point, 22), times[index]);
         let hit = found.first[index].hit();
         assert_eq!(single(point, 0).is_nan(), hit.is_none());
         if let Some(hit) = hit {
             assert_eq!([single(point, 0), single(point, 8)], [hit.point.x as f32, hit.point.z as f32]);
-            assert_eq!(single(point, 22), hit.range as f32);
+            assert_eq!(single(point, 32), hit.range as f32);
         }
     }
     let summary = std::fs::read_to_string(folder.path().join("summary.json")).unwrap();

@@ -347,11 +347,11 @@ fn clouds_pictures_and_words_tell_too_near_from_a_miss() {
     let ply = std::fs::read(folder.path().join("cloud.ply")).unwrap();
     assert!(String::from_utf8_lossy(&ply).contains("element vertex 1\n"));
     let pcd = std::fs::read(folder.path().join("cloud.pcd")).unwrap();
-    let body = &pcd[pcd.len() - 3 * 26..];
+    let body = &pcd[pcd.len() - 3 * 40..];
     let single = |at: usize| f32::from_le_bytes(body[at..at + 4].try_into().unwrap());
-    assert!([0, 4, 8].iter().all(|&at| single(at).is_nan()) && single(22) == f32::NEG_INFINITY);
-    assert_eq!((single(26), single(26 + 22)), (10.0, 10.0));
-    assert!(single(2 * 26).is_nan() && single(2 * 26 + 22).is_nan());
+    assert!([0, 4, 8, 12].iter().all(|&at| single(at).is_nan()) && single(32) == f32::NEG_INFINITY);
+    assert_eq!((single(40), single(40 + 32)), (10.0, 10.0));
+    assert!(single(2 * 40).is_nan() && single(2 * 40 + 32).is_nan());
 
     let picture = range_picture(&answers, &set).unwrap().svg();
     assert!(picture.contains("too near") && picture.contains("nothing is hit"));

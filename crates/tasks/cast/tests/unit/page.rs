@@ -1,3 +1,4 @@
+use raypencil_scene::pattern::Mounting;
 use raypencil_scene::{RaySet, Reading, Sides};
 
 use super::*;
@@ -32,7 +33,7 @@ fn a_head_has_a_row_for_each_channel_with_the_highest_on_top() {
         times: None,
         weights: None,
         elevations_deg: Some(vec![-15.0, 15.0, 0.0]),
-        up: glam::DVec3::Z,
+        mounting: Mounting::HERE,
     };
     let found = Layout::of(&set.shape, Some(&set));
     assert_eq!((found.width, found.height), (2, 3));

@@ -1,7 +1,7 @@
 //! Each warning on rays that deserve it, and on rays that do not.
 
 use raypencil_scene::Silent;
-use raypencil_scene::pattern::PatternRays;
+use raypencil_scene::pattern::{Mounting, PatternRays};
 
 use super::*;
 use crate::answers::{Questions, cast};
@@ -127,8 +127,14 @@ fn an_open_mesh_is_told_where_crossings_are_asked_for() {
 fn a_pattern_is_told_of_another_axis_and_another_unit() {
     let of_set = |mesh: &Triangles, rays: Vec<CastRay>| {
         let shape = vec![rays.len() as u64];
-        let pattern =
-            PatternRays { shape, rays, times: None, weights: None, elevations_deg: None, up: DVec3::Z };
+        let pattern = PatternRays {
+            shape,
+            rays,
+            times: None,
+            weights: None,
+            elevations_deg: None,
+            mounting: Mounting::HERE,
+        };
         let set = NamedRaySet::new("os1", pattern, Sides::Both).unwrap();
         let answers = cast(mesh, set.set.rays(), Sides::Both, Questions::default(), &Silent);
         let warnings = cast_warnings(mesh, set.set.rays(), Sides::Both, Some(&set), &answers);

@@ -155,8 +155,7 @@ fn a_validation_and_a_campaign_say_why_too() {
     screen(folder, &render.split(' ').collect::<Vec<_>>(), 0);
     let line = ["validate", "scenes/small.toml", "--candidate", "mine", "-o", "out"];
     let found = screen(folder, &line, 1).split_whitespace().collect::<Vec<_>>().join(" ");
-    let why =
-        "Why mine is wrong: 100 % of the wrong rays agree if cx is 23.5 in place of 24 px";
+    let why = "Why mine is wrong: 100 % of the wrong rays agree if cx is 23.5 in place of 24 px";
     assert!(found.contains(why), "{found}");
     let read = |path: &str| fs::read_to_string(folder.join(path)).expect("a report");
     assert!(read("out/report.html").contains(why) && read("out/summary.md").contains(why));

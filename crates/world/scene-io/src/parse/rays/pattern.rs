@@ -1,13 +1,12 @@
 //! What a set is made of: `file`, `spinning`, `grid`, or a `cone` of one of these.
 
-use glam::DVec3;
 use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
 
 use raypencil_files::{FileError, Limits, RayArray, bytes, rays_from_bytes, sha256};
 use raypencil_scene::SceneError;
-use raypencil_scene::pattern::{Cone, Grid, PatternRays, Spinning};
+use raypencil_scene::pattern::{Cone, Grid, Mounting, PatternRays, Spinning};
 
 use crate::digest::NamedDigest;
 use crate::parse::key::Key;
@@ -52,7 +51,7 @@ impl Pattern {
                 times: None,
                 weights: None,
                 elevations_deg: None,
-                up: DVec3::Z,
+                mounting: Mounting::HERE,
             }),
             Self::Spinning(head) => head.rays(&format!("{name}.spinning")),
             Self::Grid(grid) => grid.rays(&format!("{name}.grid")),
