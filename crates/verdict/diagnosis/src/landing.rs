@@ -7,9 +7,9 @@ use raypencil_scene::{Camera, Mounted, Place, Pose, Scene, SensorId, Silent};
 
 use crate::rules::Numbers;
 use crate::sample::WrongRays;
-use crate::tally::{MIN_CONFIRMING_RAYS, Tally};
+use crate::tally::{LEFT_ONE_IN, MIN_CONFIRMING_RAYS, Tally};
 
-/// What numbers of the camera explain of those beams whose hits are right.
+/// What numbers of the camera explain of those beams whose hits are right, nearly all.
 ///
 /// The scene with that camera has exact answers of its own, and the judge holds the beams' rays to them. A beam of which they
 /// explain too little is left out, and one whose pencils meet something else.
@@ -22,7 +22,9 @@ pub(crate) fn explained_by_camera(
 ) -> Vec<(SensorId, Tally)> {
     let wrong_of = |sensor: &SensorId| (*sensor, WrongRays::of(check, &[*sensor]));
     let beams = sensors.iter().filter(|sensor| **sensor != SensorId::Camera).map(wrong_of);
-    let beams: Vec<(SensorId, WrongRays)> = beams.filter(|(_, wrong)| wrong.of_hits.is_empty()).collect();
+    // No camera mends what pencils meet.
+    let is_of_light = |wrong: &WrongRays| wrong.of_hits.len() as u64 * LEFT_ONE_IN <= wrong.all.len() as u64;
+    let beams: Vec<(SensorId, WrongRays)> = beams.filter(|(_, wrong)| is_of_light(wrong)).collect();
     if beams.is_empty() || *numbers == Numbers::SCENE {
         return Vec::new();
     }

@@ -2,7 +2,7 @@
 
 /// A reason leaves at most one in so many of the wrong rays wrong, and breaks no more right ones than that. Tuned: rays
 /// near an edge may differ twice.
-const LEFT_ONE_IN: u64 = 50;
+pub(crate) const LEFT_ONE_IN: u64 = 50;
 
 /// Wrong rays, at least, from which a reason is found.
 ///
