@@ -5,6 +5,9 @@ use glam::DVec3;
 use crate::SceneError;
 use crate::triangles::MAX_COORDINATE;
 
+/// Least size of a direction's largest component: t, a length over this, stays a finite number, for any two points within 1e30.
+const MIN_DIRECTION: f64 = 1e-270;
+
 /// A ray with both ends given: the points origin + t direction, `t_min <= t <= t_max`, exactly. And the t before which a
 /// sensor is blind, if the ray is one of a sensor.
 ///
@@ -67,8 +70,8 @@ impl CastRay {
     /// Refuses what is no ray. `field` names it.
     ///
     /// # Errors
-    /// Names the first part that is wrong: an origin that is not finite or beyond 1e30, a direction that is 0, not finite
-    /// or beyond 1e30, a `t_min` that is negative or not finite, a `t_max` below it, a `t_blind` that is negative or beyond
+    /// Names the first part that is wrong: an origin that is not finite or beyond 1e30, a direction that is 0 or shorter than 1e-270,
+    /// not finite or beyond 1e30, a `t_min` that is negative or not finite, a `t_max` below it, a `t_blind` that is negative or beyond
     /// `t_max`.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         let refuse = |part: &str, value: String, expected: &str| {
@@ -78,11 +81,11 @@ impl CastRay {
         if !is_within(self.origin) {
             return refuse("origin", self.origin.to_string(), "three finite numbers within 1e30");
         }
-        if !is_within(self.direction) || self.direction == DVec3::ZERO {
+        if !is_within(self.direction) || self.direction.abs().max_element() < MIN_DIRECTION {
             return refuse(
                 "direction",
                 self.direction.to_string(),
-                "three finite numbers within 1e30, not all 0",
+                "three finite numbers within 1e30, not all 0: the largest at least 1e-270",
             );
         }
         if !(self.t_min >= 0.0 && self.t_min <= MAX_COORDINATE) {
@@ -170,6 +173,11 @@ mod tests {
         assert!(
             message(CastRay { direction: DVec3::ZERO, ..good }).starts_with("rays[1].direction is [0, 0, 0]")
         );
+        // The t of a hit would be beyond all numbers, which means a miss.
+        assert!(
+            message(CastRay { direction: DVec3::X * 9e-271, ..good }).contains("the largest at least 1e-270")
+        );
+        assert!(RaySet::new(vec![CastRay { direction: DVec3::X * 1.1e-270, ..good }], Sides::Both).is_ok());
         assert!(
             message(CastRay { direction: DVec3::splat(f64::NAN), ..good }).starts_with("rays[1].direction")
         );

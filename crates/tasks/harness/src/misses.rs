@@ -6,7 +6,7 @@ use std::path::Path;
 use raypencil_files::{harmless, harmless_line, markdown_text, write_atomically};
 use raypencil_judge::{ListedDefect, Quantity, name_of};
 use raypencil_minimise::reduce_to_ray;
-use raypencil_pack::{PackError, PackLabel, write_pack};
+use raypencil_pack::{PackError, write_pack_of_ray};
 use raypencil_referee::{Displacement, Format, Referee};
 use raypencil_scene::{Place, Progress, Sampling, Scene, SensorId};
 use raypencil_scene_io::{Subject, probe_command, quoted, scene_sha256};
@@ -78,7 +78,7 @@ pub(crate) fn write_misses(
         let sha256 = scene_sha256(&scene);
         let arguments = quoted("scene.toml");
         let small = Subject { arguments, name, sha256, scene, vehicle: None, file_facts: Default::default() };
-        write_pack(&small, None, &PackLabel::NONE, &folder, progress)?;
+        write_pack_of_ray(&small, &folder, progress)?;
         let text = readme(subject, report, wrong, &small, place);
         let path = folder.join("README.md");
         write_atomically(&path, |file| file.write_all(text.as_bytes()))?;

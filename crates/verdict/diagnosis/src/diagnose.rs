@@ -5,6 +5,7 @@ use crate::case::Case;
 use crate::diagnosis::{Diagnosis, Reason};
 use crate::landing::explained_by_camera;
 use crate::mistake::Mistake;
+use crate::rules::Numbers;
 use crate::sample::WrongRays;
 use crate::search::{Finding, Search};
 use raypencil_judge::{Check, Class, GroundTruth, Recorded, check_rays};
@@ -45,9 +46,16 @@ pub fn diagnose(truth: &GroundTruth<'_>, recorded: &Recorded, check: &Check) -> 
         is_open
     });
     // Another camera has the light of right pencils land elsewhere.
-    let of_camera = found.iter().find(|(sensors, _)| *sensors == [SensorId::Camera]);
-    if let Some((rules, of_camera)) = of_camera.and_then(|(_, one)| Some((one.rules?, one.clone()))) {
-        for (beam, tally) in explained_by_camera(truth, recorded, check, &open, &rules.numbers) {
+    if let Some((_, of_camera)) = found.iter_mut().find(|(sensors, _)| *sensors == [SensorId::Camera])
+        && let Some((mistake, numbers)) = other_camera(truth, of_camera)
+    {
+        let beams = explained_by_camera(truth, recorded, check, &open, &numbers);
+        // Shifted cells of the image change no light: where the light is another's, the camera is another.
+        if !beams.is_empty() {
+            of_camera.mistakes = vec![mistake];
+        }
+        let of_camera = of_camera.clone();
+        for (beam, tally) in beams {
             open.retain(|sensor| *sensor != beam);
             found.push((vec![beam], Finding { tally, ..of_camera.clone() }));
         }
@@ -61,6 +69,17 @@ pub fn diagnose(truth: &GroundTruth<'_>, recorded: &Recorded, check: &Check) -> 
     }
     let reasons = together(found, compared);
     (!reasons.is_empty()).then_some(Diagnosis { reasons, unexplained: open })
+}
+
+/// The camera by whose rays a finding explains what is wrong, and the mistake that it is. Cells that are shifted hold the rays of a camera
+/// with another principal point.
+fn other_camera(truth: &GroundTruth<'_>, found: &Finding) -> Option<(Mistake, Numbers)> {
+    let [mistake] = *found.mistakes.as_slice() else { return None };
+    let Mistake::Shifted { columns, rows } = mistake else { return Some((mistake, found.rules?.numbers)) };
+    let [cx, cy] = truth.scene().camera().sensor.principal_point;
+    let [columns, rows] = [f64::from(columns), f64::from(rows)];
+    let mistake = Mistake::PrincipalPoint { stated: [cx + columns, cy + rows], truth: [cx, cy] };
+    Some((mistake, Numbers { offset: [-columns, -rows], ..Numbers::SCENE }))
 }
 
 /// A reason for what is wrong even for arithmetic of single precision, where most rays are wrong for its sake.

@@ -1,5 +1,7 @@
 //! Factor, offset and quantum of stated lengths, found from them.
 
+use std::collections::BTreeSet;
+
 use crate::case::Case;
 use crate::channel::{Value, hit_quantity};
 use crate::correction::{Correction, corrected};
@@ -20,6 +22,9 @@ const SIGNIFICANT: f64 = 16.0;
 
 /// Share of the lengths that must be multiples of a quantum. Tuned: an edge may say otherwise.
 const MIN_SHARE_OF_MULTIPLES: f64 = 0.95;
+
+/// Lengths that must occur, at least, if they are rounded. Tuned.
+const MIN_ROUNDED_LENGTHS: usize = 3;
 
 /// A quantum is so many times the last digit of the file's numbers: every number is a multiple of the last digit.
 const QUANTUM_DIGITS: f64 = 16.0;
@@ -142,6 +147,11 @@ impl Pairs {
         };
         let right = |(stated, exact): &&(f64, f64)| (stated - exact).abs() <= self.ulp;
         if 2 * self.values.iter().filter(right).count() > self.values.len() {
+            return None;
+        }
+        // One length everywhere, or two, is no grid of lengths.
+        let stated: BTreeSet<u64> = self.values.iter().map(|(stated, _)| stated.to_bits()).collect();
+        if stated.len() < MIN_ROUNDED_LENGTHS {
             return None;
         }
         quanta().into_iter().filter(|quantum| *quantum >= QUANTUM_DIGITS * self.ulp).find_map(|quantum| {

@@ -212,7 +212,18 @@ impl<'t> CastTrial<'t> {
             Some(_) => (self.wrong.len() - near_truth(&chosen)) as u64 >= MIN_WRONG_RAYS,
             None => near_truth(&chosen) as f64 <= MAX_SHARE_NEAR_TRUTH * self.wrong.len() as f64,
         };
-        (is_new && tally.is_enough(MIN_WRONG_RAYS, self.all)).then_some(tally)
+        // Rays through other places are known by what they meet: to miss everything, nearly any will do.
+        let is_met = rules.numbers == Numbers::SCENE || self.stated_hits() >= MIN_WRONG_RAYS;
+        (is_new && is_met && tally.is_enough(MIN_WRONG_RAYS, self.all)).then_some(tally)
+    }
+
+    /// Wrong rays of which the recording says that they meet something.
+    fn stated_hits(&self) -> u64 {
+        let says_hit = |place: &&Place| {
+            let own = self.channels.iter().filter(|channel| channel.sensor == place.sensor);
+            own.clone().any(|channel| channel.at(&self.case.recorded.answers, **place) != Value::Nothing)
+        };
+        self.wrong.iter().filter(says_hit).count() as u64
     }
 
     /// Whether what is stated is near a render, for each place.

@@ -133,6 +133,8 @@ impl<'t> Trial<'t> {
             let helps = |bit: &usize| best & bit != 0 && off[best & !bit].all() > off[best].all();
             used |= [1, 2].into_iter().filter(helps).sum::<usize>();
         }
-        (used == (1 << plan.corrections.len()) - 1).then_some(plan)
+        // Two that undo one another help each the other, and together nothing.
+        let helps = plan.off.all() < self.off_uncorrected();
+        (helps && used == (1 << plan.corrections.len()) - 1).then_some(plan)
     }
 }

@@ -82,7 +82,7 @@ pub use provenance::{Arithmetic, MonteCarloTotal, Provenance, ProvenanceError, n
 pub use published::{PUBLISHED, PackIdentity, PackLabel, PublishedPack};
 pub use sharpness::{Sharpness, sharpness};
 pub use verification::{DRAWN, MAX_ALL, Verification};
-pub use write::{PackError, benched, write_pack, write_questions};
+pub use write::{PackError, benched, write_pack, write_pack_of_ray, write_questions};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

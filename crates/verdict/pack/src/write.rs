@@ -133,6 +133,28 @@ pub fn write_pack(
     folder: &Path,
     progress: &dyn Progress,
 ) -> Result<Manifest, PackError> {
+    write_measured(subject, blind_seed, label, folder, (true, progress))
+}
+
+/// Writes a pack with answers that shows one ray again. It says nothing of how large a tolerance it notices, which takes seconds to measure.
+///
+/// # Errors
+/// As [`write_pack`].
+pub fn write_pack_of_ray(
+    subject: &Subject,
+    folder: &Path,
+    progress: &dyn Progress,
+) -> Result<Manifest, PackError> {
+    write_measured(subject, None, &PackLabel::NONE, folder, (false, progress))
+}
+
+fn write_measured(
+    subject: &Subject,
+    blind_seed: Option<u64>,
+    label: &PackLabel,
+    folder: &Path,
+    (is_measured, progress): (bool, &dyn Progress),
+) -> Result<Manifest, PackError> {
     let scene = &subject.scene;
     // Find the answers first: nothing is written unless all are certain.
     let certified = blind_seed.is_none().then(|| Certified::new(scene, progress));
@@ -149,7 +171,7 @@ pub fn write_pack(
         return Err(PackError::Untested { name: subject.name.clone(), untested });
     }
 
-    let sharpness = if is_counted { measured(scene, progress)? } else { Vec::new() };
+    let sharpness = if is_counted && is_measured { measured(scene, progress)? } else { Vec::new() };
     let blunt = sharpness.iter().filter(|(double, _)| !double.suffices());
     let blunt: Vec<String> = blunt
         .map(|(double, _)| {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use raypencil_diagnosis::Mistake;
 use raypencil_judge::Recorded;
 use raypencil_referee::ExactRenderer;
-use raypencil_scene::{Camera, Maybe, Mounted, Precision, Renderer, Request, Scene, SensorId};
+use raypencil_scene::{Camera, Maybe, Mounted, Precision, Renderer, Request, Scene, SensorId, SensorMap};
 
 use super::candidates::*;
 use super::wrong_renderers::wrong::Wrong;
@@ -199,7 +199,8 @@ fn the_light_of_right_beams_is_explained_by_the_camera_that_sees_it() {
         })
     };
     let all = |key: &str| vec![format!("camera, beam-0, beam-1: {key}")];
-    for by in [[-0.5, 0.0], [0.25, 0.0], [0.0, 0.5]] {
+    // By whole pixels the camera's own rays are those of shifted cells; the light of the beams tells the two apart.
+    for by in [[-0.5, 0.0], [0.25, 0.0], [0.0, 0.5], [1.0, 0.0], [0.0, -1.0]] {
         assert_eq!(bench.reasons(&moved(by)), all("principal_point"), "{by:?}");
     }
     let longer = with_camera(bench, |camera| camera.sensor.focal_length *= 1.01);
@@ -217,4 +218,44 @@ fn the_light_of_right_beams_is_explained_by_the_camera_that_sees_it() {
     let found = bench.diagnosis(&brighter).unwrap();
     assert_eq!(bench.reasons(&brighter)[0], "camera, beam-0: principal_point");
     assert!(found.reasons.iter().all(|one| !one.sensors.contains(&BEAM) || one.sensors.len() == 1));
+}
+
+#[test]
+fn a_camera_that_is_wrong_in_its_light_alone_is_told_nothing_of_its_lengths() {
+    // Of each pair one half undoes the other: t times the focal length is the depth.
+    let bench = few_pyramids();
+    let mut dark = bench.exact.clone();
+    let image = dark.answers.light[1].image.as_mut().unwrap();
+    image.cells_mut().iter_mut().for_each(|flux| *flux *= 1.0 + 1e-9);
+    assert_eq!(bench.reasons(&dark), [""; 0]);
+}
+
+#[test]
+fn a_beam_that_misses_everything_has_no_reason() {
+    let bench = few_pyramids();
+    let mut blind = bench.exact.clone();
+    let SensorMap { range, depth, face, point, normal, cos_incidence, .. } = &mut blind.answers.maps[2];
+    for lengths in [range, depth, cos_incidence].into_iter().flatten() {
+        lengths.cells_mut().fill(Maybe::NONE);
+    }
+    for vectors in [point, normal].into_iter().flatten() {
+        vectors.cells_mut().fill(Maybe::NONE);
+    }
+    face.iter_mut().for_each(|faces| faces.cells_mut().fill(Maybe::NONE));
+    assert_eq!(bench.reasons(&blind), [""; 0]);
+}
+
+#[test]
+fn one_length_everywhere_is_not_rounded() {
+    for length in [0.0, 2.0] {
+        let bench = few_pyramids();
+        let mut constant = bench.exact.clone();
+        let camera = constant.answers.maps[0].range.as_mut().unwrap();
+        camera
+            .cells_mut()
+            .iter_mut()
+            .filter(|one| one.get().is_some())
+            .for_each(|one| *one = Maybe::some(length));
+        assert!(bench.reasons(&constant).iter().all(|one| !one.contains("rounded")), "{length}");
+    }
 }

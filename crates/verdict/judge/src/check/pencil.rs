@@ -36,8 +36,30 @@ pub(super) struct DeliveredLight {
 pub(super) struct PencilContribution {
     /// The light where it is stated to land; `None` if it delivers nothing.
     pub(super) delivered: Option<DeliveredLight>,
-    /// The pixel in which it truly lands, if it is stated not to, and the class of that answer.
-    pub(super) missing_from: Option<(Pixel, Class)>,
+    /// The true light, if it is stated not to land in its pixel; the class is that of that answer.
+    pub(super) missing: Option<DeliveredLight>,
+}
+
+/// The true light of a pencil that is stated to be elsewhere, or nowhere; `None` if it delivers nothing.
+fn missing_light(
+    truth: &GroundTruth<'_>,
+    recorded: &Recorded,
+    place: Place,
+    class: Class,
+) -> Option<DeliveredLight> {
+    let SensorId::Beam(beam) = place.sensor else { return None };
+    let (visible, pixel) = truth.visibility(place);
+    let pixel = pixel.filter(|_| visible)?;
+    let (scene, model) = (truth.scene(), truth.scene().flux_model());
+    let hit = truth.hit(place)?;
+    let exact = truth.judge().rounded_return(place, hit.face, visible, Some(pixel))?;
+    let of_hit =
+        HitBounds::of_exact(scene, &scene.ray(place.sensor, place.i, place.j)?, &hit, recorded.precision);
+    let [own, other] = [model, model.other()].map(|model| exact.in_format(Format::Double, model));
+    let values = ReturnValues::of_exact(scene, &hit, &own);
+    let bounds = ReturnBounds::by_both_models(scene, (beam, place.i), &of_hit, values, recorded.precision);
+    let flux = [own.flux, other.flux];
+    Some(DeliveredLight { pixel, flux, bound: [0, 1].map(|k: usize| flux_bound(&bounds[k], flux[k])), class })
 }
 
 /// How far a flux may be off, watts (`eq1`: W/m). No light at all is exactly 0.
@@ -165,7 +187,7 @@ pub(super) fn judge_return(
         // A pencil without a hit has no return.
         let class = if assumed.is_true { Class::Agree } else { assumed.class };
         judge_no_return(entry, recorded, &stated, class);
-        return PencilContribution { delivered: None, missing_from: true_pixel.map(|pixel| (pixel, class)) };
+        return PencilContribution { delivered: None, missing: missing_light(truth, recorded, place, class) };
     };
     let pencil = RecordedPencil { truth, recorded, place, beam, stated };
     let of_hit = (hit, of_hit, assumed.class);
@@ -207,10 +229,9 @@ pub(super) fn judge_return(
     });
     let lands = delivered.map(|delivered| delivered.pixel);
     let class = entry.worst().max(hypothesis.class);
-    PencilContribution {
-        delivered,
-        missing_from: true_pixel.filter(|pixel| lands != Some(*pixel)).map(|pixel| (pixel, class)),
-    }
+    let is_missing = true_pixel.is_some() && lands != true_pixel;
+    let missing = is_missing.then(|| missing_light(truth, recorded, place, class)).flatten();
+    PencilContribution { delivered, missing }
 }
 
 /// The pixel of the image that is nearest to where a point lands, and whether it lands there; `None` for a point that is not before the

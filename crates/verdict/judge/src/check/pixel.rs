@@ -24,6 +24,8 @@ struct PixelSum {
     count: u32,
     flux: [f64; 2],
     bound: [f64; 2],
+    /// Number, light and bounds of the pencils that truly land here, and are stated not to.
+    missing: (u32, [f64; 2], [f64; 2]),
     class: Class,
 }
 
@@ -43,7 +45,13 @@ const MAX_UNCERTAIN_PENCILS: usize = 12;
 impl BeamImage {
     pub(super) fn empty(truth: &GroundTruth<'_>, beam: usize) -> Self {
         let camera = &truth.scene().camera().sensor;
-        let nothing = PixelSum { count: 0, flux: [0.0; 2], bound: [0.0; 2], class: Class::Agree };
+        let nothing = PixelSum {
+            count: 0,
+            flux: [0.0; 2],
+            bound: [0.0; 2],
+            missing: (0, [0.0; 2], [0.0; 2]),
+            class: Class::Agree,
+        };
         let cells = camera.width as usize * camera.height as usize;
         Self { beam, width: camera.width, pixels: vec![nothing; cells], uncertain: HashMap::new() }
     }
@@ -64,9 +72,16 @@ impl BeamImage {
             }
             sum.class = sum.class.max(delivered.class);
         }
-        if let Some((pixel, class)) = contribution.missing_from {
-            let index = self.index(pixel);
-            self.pixels[index].class = self.pixels[index].class.max(class);
+        if let Some(missing) = &contribution.missing {
+            let index = self.index(missing.pixel);
+            let sum = &mut self.pixels[index];
+            let (count, flux, bound) = &mut sum.missing;
+            *count += 1;
+            for k in 0..2 {
+                flux[k] += missing.flux[k];
+                bound[k] += missing.bound[k];
+            }
+            sum.class = sum.class.max(missing.class);
         }
     }
 
@@ -95,10 +110,15 @@ impl BeamImage {
             let (stated, exact) = (stated.at(i, j), exact.at(i, j));
             let storage = recorded.storage_of(SensorId::Camera, item);
             // n u Sigma of the recording's sum, and the loss of n numbers that are subnormal in its arithmetic.
-            let count = f64::from(sum.count);
-            let rounding = count * recorded.precision.unit_roundoff * sum.flux[k]
-                + count * min_normal(recorded.precision) * recorded.precision.unit_roundoff;
-            let base = sum.bound[k] + rounding;
+            let rounding = |count: u32, flux: f64| {
+                let count = f64::from(count);
+                count * recorded.precision.unit_roundoff * flux
+                    + count * min_normal(recorded.precision) * recorded.precision.unit_roundoff
+            };
+            let base = sum.bound[k] + rounding(sum.count, sum.flux[k]);
+            // The true sum has the pencils, too, that are stated not to be in it: who is wrong about a pencil may be right about its pixel.
+            let (missing, lost, lost_bound) = sum.missing;
+            let of_all = sum.bound[k] + lost_bound[k] + rounding(sum.count + missing, sum.flux[k] + lost[k]);
             let difference = |from: f64, bound: f64| {
                 let stored = 0.5 * (storage.ulp(stated) + Storage::F64.ulp(from));
                 Difference {
@@ -110,7 +130,7 @@ impl BeamImage {
                     is_unrepresentable: from != 0.0 && 0.5 * storage.ulp(from) >= from,
                 }
             };
-            let of_truth = difference(exact, base);
+            let of_truth = difference(exact, of_all);
             let own = difference(sum.flux[k], base);
             let (difference, class) = if of_truth.is_within() {
                 (of_truth, Class::Agree)

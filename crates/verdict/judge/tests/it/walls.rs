@@ -756,3 +756,42 @@ fn each_side_is_held_to_its_own_arithmetic() {
         }
     }
 }
+
+#[test]
+fn a_right_pixel_stays_right_where_its_pencils_are_wrong() {
+    let scene = walls(FluxModel::Radiometric);
+    let truth = GroundTruth::certified(&scene, &Silent);
+    let mut output = exact(&scene);
+    // A program rounds its sums: its light is a few last digits off.
+    let image = &mut output.flux[0];
+    image.cells_mut().iter_mut().for_each(|flux| *flux *= 1.0 + 2.0 * f64::EPSILON);
+    let wrong_pixels = |output: &RenderOutput| {
+        let recorded = Recorded::of_output("mine", &scene, output, Precision::F64);
+        check(&truth, &recorded, &Silent).sensors[0].of(Class::Defect)
+    };
+    assert_eq!(wrong_pixels(&output), 0);
+    let lit = image_of(&output).iter().filter(|flux| **flux > 0.0).count() as u64;
+    assert_ne!(lit, 0);
+    // The pencils, which it writes to files of their own, are said to meet nothing, or to be hidden.
+    let mut lost = output.clone();
+    map(&mut lost).face.as_mut().unwrap().cells_mut().fill(Maybe::NONE);
+    map(&mut lost).range.as_mut().unwrap().cells_mut().fill(Maybe::NONE);
+    let mut hidden = output.clone();
+    returns(&mut hidden).visible.as_mut().unwrap().cells_mut().fill(false);
+    // The light is held to the same bound as beside right pencils.
+    let brighter = |output: &RenderOutput, by: f64| {
+        let mut output = output.clone();
+        output.flux[0].cells_mut().iter_mut().for_each(|flux| *flux *= 1.0 + by);
+        wrong_pixels(&output)
+    };
+    let sizes = [0.0, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10];
+    let expected = sizes.map(|by| brighter(&output, by));
+    assert_eq!((expected[0], expected[6]), (0, lit));
+    for wrong in [lost, hidden] {
+        assert_eq!(sizes.map(|by| brighter(&wrong, by)), expected);
+    }
+}
+
+fn image_of(output: &RenderOutput) -> &[f64] {
+    output.flux[0].cells()
+}
