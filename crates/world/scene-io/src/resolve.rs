@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use raypencil_rover::{OnVehicle, Rig};
 use raypencil_scene::{Atmosphere, Mesh, Mounted, NamedRaySet, Pose, Scene, SceneError};
+use raypencil_survey::{TerrainShape, lies_on_its_side};
 
 use crate::plan::{Mount, ScenePlan, VehiclePlacement};
 
@@ -111,8 +112,12 @@ pub(crate) fn extent(mesh: &Mesh) -> String {
             match has_face_that_looks_up(mesh) {
                 true => place,
                 false => {
-                    place
-                        + ", and faces whose fronts are up (here none is: are corners clockwise seen from above?)"
+                    let on_its_side = TerrainShape::of(mesh).is_some_and(|shape| lies_on_its_side(&shape));
+                    let question = match on_its_side {
+                        true => "does its file have y up? Then set terrain.up=y",
+                        false => "are corners clockwise seen from above?",
+                    };
+                    format!("{place}, and faces whose fronts are up (here none is: {question})")
                 }
             }
         }

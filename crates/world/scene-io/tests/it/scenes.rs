@@ -392,3 +392,17 @@ fn the_template_is_the_documented_default_scene() {
     let written = std::fs::read_to_string(scenes().join("default.toml")).unwrap();
     assert_eq!(raypencil_scene_io::SCENE_TEMPLATE, written);
 }
+
+#[test]
+fn a_ground_that_lies_on_its_side_is_told_from_one_that_is_turned_over() {
+    let folder = tempfile::tempdir().unwrap();
+    // A square of 20 x 20 m whose y is up in its file: it faces along y.
+    let path = folder.path().join("side.obj");
+    let vertices = "v -10 0 -10\nv 10 0 -10\nv 10 0 10\nv -10 0 10\n";
+    std::fs::write(&path, format!("{vertices}f 1 3 2\nf 1 4 3\n")).unwrap();
+    let message = load_path(&path, &Overrides::default()).unwrap_err().to_string();
+    assert!(message.ends_with("(here none is: does its file have y up? Then set terrain.up=y)"), "{message}");
+    let settings = vec![raypencil_scene_io::Setting::parse("terrain.up=y").unwrap()];
+    let up = Overrides { settings, ..Overrides::default() };
+    assert!(load_path(&path, &up).is_ok());
+}
