@@ -3,6 +3,7 @@
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
+use crate::disk::in_place_of_a_file;
 use crate::error::FileError;
 use crate::journal::{persist, temporary_beside};
 
@@ -33,13 +34,21 @@ pub fn write_atomically(
     let path = path.as_ref();
     let attempt = || {
         let mut temporary = temporary_beside(path)?;
-        let mut writer = BufWriter::new(temporary.as_file_mut());
+        let mut writer = BufWriter::new(&mut temporary);
         write(&mut writer)?;
         writer.flush()?;
         drop(writer);
         persist(temporary, path)
     };
     attempt().map_err(|error| FileError::io(path, "write", error))
+}
+
+/// Refuses a place that a file cannot be written to because a folder is there: before the work for the file is done.
+///
+/// # Errors
+/// The folder, and that it is to be removed.
+pub fn ask_place(path: &Path) -> Result<(), FileError> {
+    in_place_of_a_file(path).map_err(|error| FileError::io(path, "write", error))
 }
 
 #[cfg(test)]

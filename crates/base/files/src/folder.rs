@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::atomic::write_atomically;
+use crate::disk;
 use crate::error::FileError;
 
 /// Why an output folder could not be prepared, or one of its files not be written.
@@ -90,7 +91,7 @@ fn no_folder(source: &io::Error) -> String {
 pub fn begin_output_folder(folder: &Path, last: &str) -> Result<PathBuf, FolderError> {
     create_folder(folder)?;
     let last = folder.join(last);
-    match std::fs::remove_file(&last) {
+    match disk::remove_file(&last) {
         Err(source) if source.kind() != io::ErrorKind::NotFound => {
             Err(FolderError::RemoveEarlier { path: last, source })
         }
@@ -127,6 +128,5 @@ pub fn write_texts(folder: &Path, texts: &[(&str, String)]) -> Result<(), Folder
 /// # Errors
 /// [`FolderError::Create`], with the folder.
 pub fn create_folder(folder: &Path) -> Result<(), FolderError> {
-    std::fs::create_dir_all(folder)
-        .map_err(|source| FolderError::Create { path: folder.to_path_buf(), source })
+    disk::create_dir_all(folder).map_err(|source| FolderError::Create { path: folder.to_path_buf(), source })
 }

@@ -3,8 +3,7 @@
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::NamedTempFile;
-
+use crate::disk::Temporary;
 use crate::error::FileError;
 use crate::journal::{persist, temporary_beside};
 use crate::npy::header;
@@ -26,7 +25,7 @@ use crate::npy::header;
 #[derive(Debug)]
 pub struct GrowingFile {
     path: PathBuf,
-    file: BufWriter<NamedTempFile>,
+    file: BufWriter<Temporary>,
 }
 
 impl GrowingFile {

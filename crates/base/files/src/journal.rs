@@ -4,15 +4,18 @@
 //! lose it.
 
 use std::collections::BTreeMap;
+use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use tempfile::NamedTempFile;
-
+use crate::disk::{self, TEMPORARY, Temporary, is_temporary};
 use crate::error::FileError;
+use crate::folder_lock::{LOCK_NAME, has_run};
+use crate::made_list::{MADE_NAME, line};
 use crate::sha256::file_sha256_hex;
+use crate::watch::process;
 
 /// The output folders that runs of this process are writing into.
 static OPEN: Mutex<Vec<Open>> = Mutex::new(Vec::new());
@@ -27,6 +30,22 @@ struct Open {
     folder: PathBuf,
     /// Files below it, with their digests.
     written: BTreeMap<PathBuf, String>,
+    /// The folder's lock, which has each file before it is put in its place.
+    ahead: Option<Arc<File>>,
+    /// Threads may play several processes.
+    process: u64,
+}
+
+impl Open {
+    /// The path of a place in the folder, if it is noted there: all that is below but what is half-written, and what this crate
+    /// writes into the folder itself. The list of a run in a folder below is a file of this one.
+    fn name_of<'a>(&self, place: &'a Path) -> Option<&'a Path> {
+        let name = place.strip_prefix(&self.folder).ok()?;
+        let is_half_written = name.components().any(|part| is_temporary(part.as_os_str()));
+        let is_own = place.file_name()?.to_string_lossy().starts_with(TEMPORARY.0);
+        let is_list_below = name.ends_with(MADE_NAME) && name != Path::new(MADE_NAME);
+        (!is_half_written && (!is_own || is_list_below)).then_some(name)
+    }
 }
 
 /// The files that this process writes below a folder, as long as this value lives.
@@ -53,9 +72,20 @@ impl Journal {
     /// # Errors
     /// A folder that does not exist.
     pub fn begin(folder: &Path) -> io::Result<Self> {
+        Self::begin_with(folder, None)
+    }
+
+    /// The same with the folder's lock, into which each file is written before it is put in its place.
+    pub(crate) fn begin_with(folder: &Path, ahead: Option<File>) -> io::Result<Self> {
         let folder = folder.canonicalize()?;
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
-        open().push(Open { number, folder, written: BTreeMap::new() });
+        open().push(Open {
+            number,
+            folder,
+            written: BTreeMap::new(),
+            ahead: ahead.map(Arc::new),
+            process: process(),
+        });
         Ok(Self { number })
     }
 
@@ -77,7 +107,12 @@ impl Drop for Journal {
 
 /// Whether a run of this process is writing into this very folder.
 pub(crate) fn is_open(folder: &Path) -> bool {
-    folder.canonicalize().is_ok_and(|folder| open().iter().any(|open| open.folder == folder))
+    folder.canonicalize().is_ok_and(|folder| own(&mut open()).any(|open| open.folder == folder))
+}
+
+/// The runs of this process.
+fn own(open: &mut [Open]) -> impl Iterator<Item = &mut Open> {
+    open.iter_mut().filter(|open| open.process == process())
 }
 
 /// The folder of a file; a bare name has the empty path as its parent.
@@ -89,19 +124,14 @@ fn folder_of(path: &Path) -> &Path {
 }
 
 /// A new file beside the place that [`persist`] puts it in.
-pub(crate) fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".raypencil-").suffix(".part");
-    // Temporary files are private by default; the finished file is to be as readable as any other output.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(folder_of(path))
+pub(crate) fn temporary_beside(path: &Path) -> io::Result<Temporary> {
+    Temporary::create_in(folder_of(path))
 }
 
 /// Puts a complete temporary file in its place, and notes it where a run is open.
-pub(crate) fn persist(temporary: NamedTempFile, path: &Path) -> io::Result<()> {
+pub(crate) fn persist(temporary: Temporary, path: &Path) -> io::Result<()> {
     let noted = note(temporary.path(), path)?;
-    temporary.persist(path).map_err(|error| error.error)?;
+    temporary.persist(path)?;
     enter(noted);
     Ok(())
 }
@@ -109,36 +139,76 @@ pub(crate) fn persist(temporary: NamedTempFile, path: &Path) -> io::Result<()> {
 /// Puts a complete file of this process in its place, on the same file system, and notes it where a run is open.
 ///
 /// # Errors
-/// The error of the file system, with the path of the place.
+/// The error of the file system, with the path of the place; another process's run that is writing there.
 pub fn put_in_place(from: &Path, to: &Path) -> Result<(), FileError> {
     let attempt = || {
         let noted = note(from, to)?;
-        std::fs::rename(from, to)?;
+        disk::rename(from, to)?;
         enter(noted);
         Ok(())
     };
     attempt().map_err(|error: io::Error| FileError::io(to, "write", error))
 }
 
+/// Says that a file, which is of this digest, is the open run's to remove: if that dies, the next one does.
+///
+/// # Errors
+/// That of the file system, with the path of the file.
+pub fn claim(file: &Path, sha256: &str) -> Result<(), FileError> {
+    let attempt = || match place_of(file)? {
+        Some(place) => write_ahead(&place, sha256),
+        None => Ok(()),
+    };
+    attempt().map_err(|error: io::Error| FileError::io(file, "claim", error))
+}
+
 /// The canonical path of a file, and its digest before anybody else can see it; `None` where no run is open for it.
 fn note(file: &Path, path: &Path) -> io::Result<Option<(PathBuf, String)>> {
+    let Some(place) = place_of(path)? else { return Ok(None) };
+    let (_, sha256) = file_sha256_hex(file)?;
+    write_ahead(&place, &sha256)?;
+    Ok(Some((place, sha256)))
+}
+
+/// The canonical path of a file for which a run is open.
+fn place_of(path: &Path) -> io::Result<Option<PathBuf>> {
     if open().is_empty() {
         return Ok(None);
     }
     let Some(name) = path.file_name() else { return Ok(None) };
     let place = folder_of(path).canonicalize()?.join(name);
-    if !open().iter().any(|open| place.starts_with(&open.folder)) {
-        return Ok(None);
+    let is_open = own(&mut open()).any(|open| open.name_of(&place).is_some());
+    Ok(is_open.then_some(place))
+}
+
+/// Writes a file into the locks of the runs that are open for it, before it is put in its place.
+fn write_ahead(place: &Path, sha256: &str) -> io::Result<()> {
+    let folders: Vec<PathBuf> = own(&mut open()).map(|open| open.folder.clone()).collect();
+    for folder in folders.iter().filter(|folder| place.starts_with(folder)) {
+        // It may have begun there after this run, which looked below its folder when it began.
+        let between = place.ancestors().skip(1).take_while(|above| above != folder);
+        if let Some(other) = between.into_iter().find(|above| has_run(above)) {
+            let what = format!("another run is writing into {}", other.display());
+            return Err(io::Error::new(io::ErrorKind::ResourceBusy, what));
+        }
     }
-    let (_, sha256) = file_sha256_hex(file)?;
-    Ok(Some((place, sha256)))
+    let line_for = |open: &mut Open| {
+        let name = open.name_of(place)?;
+        Some((open.ahead.clone()?, open.folder.join(LOCK_NAME), line(name, sha256)?))
+    };
+    let lines: Vec<_> = own(&mut open()).filter_map(line_for).collect();
+    for (ahead, path, line) in lines {
+        // The line before it may have been cut off.
+        disk::write(&mut &*ahead, &path, format!("\n{line}").as_bytes())?;
+    }
+    Ok(())
 }
 
 fn enter(noted: Option<(PathBuf, String)>) {
     let Some((place, sha256)) = noted else { return };
-    for open in open().iter_mut() {
-        if let Ok(name) = place.strip_prefix(&open.folder) {
-            open.written.insert(name.to_path_buf(), sha256.clone());
+    for open in own(&mut open()) {
+        if let Some(name) = open.name_of(&place).map(PathBuf::from) {
+            open.written.insert(name, sha256.clone());
         }
     }
 }

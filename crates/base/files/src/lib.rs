@@ -13,7 +13,9 @@
 //! quoted                         words for a shell
 //! sha256, journal                digests, and what this process has written where
 //! program                        digests of programs
+//! watch, disk                    operations that change a disk, each of which a test can let fail
 //! atomic, folder                 writing a file whole, output folders
+//! made_list, folder_lock         what a run has made in a folder, and who writes there
 //! output_folder                  one run at a time in a folder, and nothing of an earlier one left in it
 //! harmless                       texts of untrusted files, for terminals and Markdown
 //! growing_file                   a file or table that grows for a while and is seen only when it is complete
@@ -50,13 +52,16 @@
 mod atomic;
 pub mod bytes;
 mod channels;
+mod disk;
 mod error;
 mod exr;
 mod folder;
+mod folder_lock;
 mod growing_file;
 mod harmless;
 mod journal;
 mod limits;
+mod made_list;
 mod named_array;
 mod npy;
 mod npz;
@@ -70,13 +75,15 @@ mod sha256;
 mod shape;
 mod tiff;
 mod values;
+mod watch;
 mod zarr;
 
-pub use atomic::write_atomically;
+pub use atomic::{ask_place, write_atomically};
 pub use channels::{
     Channel, Channels, Declared, DeclaredChannel, Used, add_ray_sets, read_channels, read_channels_as,
     read_listed_channels,
 };
+pub use disk::{TemporaryFolder, create_dir_all, remove_dir, remove_file};
 pub use error::{Fault, FileError, Problem, shortened};
 pub use exr::{
     Attributes, ExrMap, ExrPart, Raster, exr_from_bytes, exr_parts_from_bytes, read_exr, read_exr_parts,
@@ -85,18 +92,19 @@ pub use exr::{
 pub use folder::{FolderError, begin_output_folder, create_folder, write_texts};
 pub use growing_file::{GrowingFile, NpyRows};
 pub use harmless::{harmless, harmless_line, harmless_source, markdown_text};
-pub use journal::{Journal, put_in_place};
+pub use journal::{Journal, claim, put_in_place};
 pub use limits::{
     Limits, MAX_EXPANSION, MAX_EXR_ATTRIBUTES, MAX_EXR_CHANNELS, MAX_EXR_HEADER_BYTES, MAX_EXR_PARTS,
     MAX_INFLATED_BYTES, limit_memory, part_of_memory,
 };
+pub use made_list::subject_of;
 pub use named_array::{ArrayData, NamedArray, write_npz, write_zarr};
 pub use npy::{
     ArrayNumber, Numbers, npy_from_bytes, npy_numbers_from_bytes, read_npy, read_npy_numbers, write_npy,
     write_npy_numbers,
 };
 pub use npz::{npz_from_bytes, read_npz};
-pub use output_folder::{MIN_ABANDONED_AGE, OutputFolder, remove_abandoned, subject_of};
+pub use output_folder::{MIN_ABANDONED_AGE, OutputFolder, SharedFolder, remove_abandoned};
 pub use pfm::{pfm_from_bytes, read_pfm, write_pfm};
 pub use png::{png_from_bytes, read_picture_png};
 pub use program::{command_files, program_sha256};
@@ -105,6 +113,7 @@ pub use rays::{RayArray, ray_rows, rays_from_bytes, read_rays};
 pub use sha256::{Sha256Digest, combined_sha256_hex, file_sha256, file_sha256_hex, hex_digits, sha256};
 pub use tiff::{read_picture_tiff, tiff_from_bytes};
 pub use values::{Array, Step, Storage, Values};
+pub use watch::{Operation, Watch, Watcher, watch};
 pub use zarr::{ZarrArray, read_zarr};
 
 #[cfg(doctest)]
@@ -114,6 +123,12 @@ struct Readme;
 // The tests by public items are in the program of the unit tests: one executable for the crate.
 #[cfg(test)]
 extern crate self as raypencil_files;
+#[cfg(test)]
+#[path = "../tests/unit/folder_faults.rs"]
+mod folder_faults;
+#[cfg(test)]
+#[path = "../tests/unit/folder_orders.rs"]
+mod folder_orders;
 #[cfg(test)]
 #[path = "../tests/it/mod.rs"]
 mod it;

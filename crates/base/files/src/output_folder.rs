@@ -1,40 +1,34 @@
 //! The output folder of a run: one run at a time, nothing of an earlier run beside the files of this one, and nothing removed
 //! that no run has made.
 //!
-//! While a run writes, its folder has a locked file. When the run ends, it leaves the list of the files that it wrote itself, in the
-//! format of `sha256sum`. The next run removes those that it does not make again and that are as the list says: a file that was
-//! changed since, or put there by somebody else, at any time, stays. The list names the folder that it was made in: a copy of it
-//! elsewhere is nobody's list.
+//! While a run writes, its folder has a locked file, to which it appends each file before it puts it in its place. When the run
+//! ends, it leaves the list of the files that it wrote itself, in the format of `sha256sum`, and removes its lock; one that dies
+//! leaves the lock, and with it the list. The next run removes what it does not make again and that is as the list says: a file that
+//! was changed since, or put there by somebody else, at any time, stays. A list names the folder that it was made in: a copy of it
+//! elsewhere is nobody's list. `docs/theory/folders.md` has the states of a folder.
 
 use std::collections::BTreeMap;
-use std::fs::{File, Metadata, TryLockError};
-use std::io;
+use std::fs::File;
+use std::io::{self, Read as _, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use crate::atomic::write_atomically;
-use crate::bytes;
+use crate::disk::{self, TEMPORARY, is_temporary};
 use crate::folder::{FolderError, create_folder};
+use crate::folder_lock::{LOCK_NAME, has_run, identity, lock, unlock_shared};
 use crate::journal::{Journal, is_open};
+use crate::made_list::{
+    Entry, MADE_NAME, entries, heading, is_claimed_below, listed_subject, made_earlier, subject_of, text_of,
+};
 use crate::sha256::file_sha256_hex;
-
-/// Name of the file that is locked while a run writes.
-const LOCK_NAME: &str = ".raypencil-lock";
-
-/// Name of the list of files that a run has made.
-const MADE_NAME: &str = ".raypencil-made";
-
-/// Begin of its second line, which says what the files are of.
-const SUBJECT: &str = "# results of ";
-
-/// Maximum size of that list, bytes.
-const MAX_MADE_BYTES: u64 = 1 << 26;
+use crate::watch::{Operation, told};
 
 /// Depth of folders below the output folder that are looked at.
 const MAX_DEPTH: usize = 6;
 
-/// How often a lock is asked for that somebody has, before a run is taken to have it.
-const LOOKS: u32 = 5;
+/// Maximum size of what a run that died has left in its lock, bytes.
+const MAX_LOCK_BYTES: u64 = 1 << 26;
 
 /// Files by which a folder is a pack.
 const PACK_NAMES: [&str; 3] = ["manifest.json", "raypack.json", "input.json"];
@@ -77,10 +71,17 @@ pub struct OutputFolder {
     journal: Journal,
     /// Files that were there when the run began.
     before: BTreeMap<PathBuf, Stamp>,
-    /// Files that an earlier run has made, with their digests.
-    earlier: Vec<(PathBuf, String)>,
+    /// Files that earlier runs have made, also one that died, with their digests. One that died may have left two of a file.
+    earlier: Vec<Entry>,
+    /// Whether `earlier` has files that no list names.
+    is_unlisted: bool,
     /// What the results are of.
     subject: Option<String>,
+    /// Whether the list is as it is to be.
+    is_finished: bool,
+    /// Whether something of an earlier run could not be removed. Then the lock stays: without one, a folder has nothing of earlier
+    /// runs beside its mark.
+    is_mixed: bool,
 }
 
 impl OutputFolder {
@@ -127,30 +128,43 @@ impl OutputFolder {
         Ok(output)
     }
 
-    /// The same for a folder that may be a pack. One that is dropped without [`OutputFolder::finish`] leaves no list.
+    /// The same for a folder that may be a pack, which has a list of its own: it ends by [`OutputFolder::finish_unlisted`].
     ///
     /// # Errors
     /// As [`OutputFolder::begin`].
     pub fn begin_any(folder: &Path) -> Result<Self, FolderError> {
-        let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
-        let made: Vec<PathBuf> = folder.ancestors().take_while(is_missing).map(PathBuf::from).collect();
         let cannot = |source| FolderError::Create { path: folder.to_path_buf(), source };
-        // Before anything is made, so that a run that is refused leaves nothing.
-        let there = folder.ancestors().find(|above| above.exists()).unwrap_or(Path::new("."));
-        let whole = there.canonicalize().map_err(cannot)?;
-        let own = usize::from(there == folder);
-        if let Some(above) = whole.ancestors().skip(own).take(MAX_DEPTH).find(|above| has_run(above)) {
-            return Err(FolderError::InUse { path: above.to_path_buf() });
+        let made = made_for_a_run(folder)?;
+        let mut lock = lock(folder, false)?;
+        // First, so that it is known of whatever fails afterwards.
+        let left = lock.as_mut().map(|lock| left_by_a_dead_run(folder, lock)).transpose().map_err(cannot)?;
+        let mut earlier = left.unwrap_or_default();
+        let is_unlisted = !earlier.is_empty();
+        earlier.extend(made_earlier(folder));
+        let ahead = lock.as_ref().map(File::try_clone).transpose().map_err(cannot)?;
+        let journal = Journal::begin_with(folder, ahead).map_err(cannot)?;
+        let (before, subject, is_finished, is_mixed) = (BTreeMap::new(), None, false, false);
+        let folder = folder.to_path_buf();
+        let mut output = Self {
+            folder,
+            made,
+            lock,
+            journal,
+            before,
+            earlier,
+            is_unlisted,
+            subject,
+            is_finished,
+            is_mixed,
+        };
+        let folder = &output.folder;
+        // One that began above meanwhile has looked below before this lock was there, or is seen now.
+        refuse_below_a_run(folder.canonicalize().map_err(cannot)?.ancestors().skip(1))?;
+        if let Some(lock) = output.lock.as_mut().filter(|_| !is_unlisted) {
+            begin_lock(folder, lock).map_err(cannot)?;
         }
-        create_folder(folder)?;
-        let lock = lock(folder)?;
-        let journal = Journal::begin(folder).map_err(cannot)?;
-        let (before, earlier) = (BTreeMap::new(), Vec::new());
-        let subject = None;
-        let mut output = Self { folder: folder.to_path_buf(), made, lock, journal, before, earlier, subject };
         // No run that could be writing them is left.
-        output.before = files_below(folder, &mut remove_part);
-        output.earlier = made_earlier(folder);
+        output.before = files_below(folder, &mut |part| remove_part(part, MIN_ABANDONED_AGE));
         Ok(output)
     }
 
@@ -159,56 +173,181 @@ impl OutputFolder {
         self.journal.written()
     }
 
-    /// Removes the files of an earlier run that this one has not made again, and lists its own. A run that wrote nothing leaves
+    /// Removes the files of earlier runs that this one has not made again, and lists its own. A run that wrote nothing leaves
     /// no list.
     ///
     /// # Errors
     /// A file that cannot be removed, read or written.
-    pub fn finish(self) -> Result<(), FolderError> {
+    pub fn finish(mut self) -> Result<(), FolderError> {
+        let now = self.remove_earlier().inspect_err(|_| self.is_mixed = true)?;
+        let mut written = self.written();
+        written.retain(|name, _| now.contains_key(name));
+        self.list(&written)?;
+        self.is_finished = true;
+        Ok(())
+    }
+
+    /// The same without a list: of a pack, whose manifest is one.
+    ///
+    /// # Errors
+    /// As [`OutputFolder::finish`].
+    pub fn finish_unlisted(mut self) -> Result<(), FolderError> {
+        self.remove_earlier().inspect_err(|_| self.is_mixed = true)?;
+        self.list(&BTreeMap::new())?;
+        self.is_finished = true;
+        Ok(())
+    }
+
+    /// Removes the files of earlier runs that are as these have made them, and that nobody has made again. Returns the files that
+    /// there were.
+    fn remove_earlier(&self) -> Result<BTreeMap<PathBuf, Stamp>, FolderError> {
         let now = files_below(&self.folder, &mut |_| {});
         let is_as_before =
             |name: &PathBuf| self.before.get(name).is_some_and(|stamp| now.get(name) == Some(stamp));
-        for (name, sha256) in self.earlier.iter().filter(|(name, _)| is_as_before(name)) {
+        // Before any list goes.
+        let is_claimed = |(name, _): &&Entry| is_claimed_below(&self.folder, name, &self.earlier);
+        let candidates = self.earlier.iter().filter(|(name, _)| is_as_before(name));
+        let candidates: Vec<&Entry> = candidates.filter(|entry| !is_claimed(entry)).collect();
+        for (name, sha256) in candidates {
             let path = self.folder.join(name);
             if file_sha256_hex(&path).is_ok_and(|(_, found)| found == *sha256) {
-                std::fs::remove_file(&path)
+                disk::remove_file(&path)
                     .map_err(|source| FolderError::RemoveEarlier { path: path.clone(), source })?;
                 // Its folder too, if that was the last file.
                 let inner = path.parent().filter(|parent| *parent != self.folder);
-                inner.map(std::fs::remove_dir);
+                inner.map(disk::remove_dir);
             }
         }
+        Ok(now)
+    }
+
+    /// Leaves a list of these files; without any none.
+    fn list(&self, files: &BTreeMap<PathBuf, String>) -> Result<(), FolderError> {
+        let list = self.folder.join(MADE_NAME);
+        if !files.is_empty() {
+            let text = text_of(&self.folder, self.subject.as_deref(), files.iter());
+            return Ok(write_atomically(list, |file| file.write_all(text.as_bytes()))?);
+        }
+        match disk::remove_file(&list) {
+            Err(source) if source.kind() != io::ErrorKind::NotFound => {
+                Err(FolderError::RemoveEarlier { path: list, source })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Lists what a run that failed has written beside what lay there, so that the next one can remove both.
+    fn list_what_is_there(&mut self) -> Result<(), FolderError> {
         let written = self.written();
-        if written.is_empty() {
-            let _ = std::fs::remove_file(self.folder.join(MADE_NAME));
+        if written.is_empty() && !self.is_unlisted {
             return Ok(());
         }
-        let mut list = heading(&self.folder) + "\n";
-        if let Some(subject) = &self.subject {
-            list += &format!("{SUBJECT}{subject}\n");
-        }
-        for (name, sha256) in written.iter().filter(|(name, _)| now.contains_key(*name)) {
-            let Some(text) = name.to_str().filter(|text| !text.contains('\n')) else { continue };
-            list += &format!("{sha256}  {text}\n");
-        }
-        write_atomically(self.folder.join(MADE_NAME), |file| file.write_all(list.as_bytes()))?;
-        Ok(())
+        self.subject = self.subject.take().or_else(|| listed_subject(&self.folder));
+        let is_there = |(name, sha256): &&Entry| {
+            file_sha256_hex(&self.folder.join(name)).is_ok_and(|(_, found)| found == *sha256)
+        };
+        let mut files: BTreeMap<PathBuf, String> = self.earlier.iter().filter(is_there).cloned().collect();
+        files.extend(written);
+        self.list(&files)
     }
 }
 
 impl Drop for OutputFolder {
     fn drop(&mut self) {
-        if self.lock.take().is_some() {
-            // Removed while it is locked, so that nobody's lock is removed.
-            let _ = std::fs::remove_file(self.folder.join(LOCK_NAME));
-        }
-        // A run that wrote nothing leaves no folder; one with files in it is not removed.
-        for folder in &self.made {
-            if std::fs::remove_dir(folder).is_err() {
-                break;
+        if self.lock.is_some() {
+            // What cannot be listed stays in the lock, as that of a run that died.
+            if self.is_finished || !self.is_mixed && self.list_what_is_there().is_ok() {
+                // Removed while it is locked, so that nobody's lock is removed.
+                let _ = disk::remove_file(&self.folder.join(LOCK_NAME));
             }
+            self.lock = None;
+        }
+        remove_empty(&self.made);
+    }
+}
+
+/// Output folder that several runs share, each of which writes files of its own: no run that wants it for itself begins in it or
+/// above it as long as one of them lives.
+#[derive(Debug)]
+pub struct SharedFolder {
+    folder: PathBuf,
+    made: Vec<PathBuf>,
+    /// `None` on a file system without locks.
+    lock: Option<File>,
+    /// So that this process's own runs in folders below are not refused.
+    _journal: Journal,
+}
+
+impl SharedFolder {
+    /// Creates the folder where it is missing, and locks it together with others who share it.
+    ///
+    /// # Errors
+    /// A folder that cannot be written, or into which a run is writing that does not share it, also as a part of a folder above.
+    pub fn begin(folder: &Path) -> Result<Self, FolderError> {
+        let cannot = |source| FolderError::Create { path: folder.to_path_buf(), source };
+        let made = made_for_a_run(folder)?;
+        let lock = lock(folder, true)?;
+        let journal = Journal::begin(folder).map_err(cannot)?;
+        let shared = Self { folder: folder.to_path_buf(), made, lock, _journal: journal };
+        refuse_below_a_run(folder.canonicalize().map_err(cannot)?.ancestors().skip(1))?;
+        Ok(shared)
+    }
+}
+
+impl Drop for SharedFolder {
+    fn drop(&mut self) {
+        if let Some(lock) = self.lock.take() {
+            unlock_shared(&self.folder, &lock);
+        }
+        remove_empty(&self.made);
+    }
+}
+
+/// Makes a folder for a run, unless another run is writing into one above. Returns the folders that were missing, the innermost
+/// first.
+fn made_for_a_run(folder: &Path) -> Result<Vec<PathBuf>, FolderError> {
+    let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
+    let made: Vec<PathBuf> = folder.ancestors().take_while(is_missing).map(PathBuf::from).collect();
+    // Before anything is made, so that a run that is refused leaves nothing.
+    let there = folder.ancestors().find(|above| above.exists()).unwrap_or(Path::new("."));
+    let whole =
+        there.canonicalize().map_err(|source| FolderError::Create { path: folder.to_path_buf(), source })?;
+    let own = usize::from(there == folder);
+    refuse_below_a_run(whole.ancestors().skip(own))?;
+    create_folder(folder)?;
+    Ok(made)
+}
+
+/// A run that wrote nothing leaves no folder; one with files in it is not removed.
+fn remove_empty(made: &[PathBuf]) {
+    for folder in made {
+        if disk::remove_dir(folder).is_err() {
+            break;
         }
     }
+}
+
+/// Refuses a folder below one into which another process's run is writing.
+fn refuse_below_a_run<'a>(above: impl Iterator<Item = &'a Path>) -> Result<(), FolderError> {
+    match above.take(MAX_DEPTH).find(|above| has_run(above)) {
+        Some(above) => Err(FolderError::InUse { path: above.to_path_buf() }),
+        None => Ok(()),
+    }
+}
+
+/// The files that a run that died had put in place, or was about to. Its lock is continued: if this run dies too, the next one
+/// knows of both.
+fn left_by_a_dead_run(folder: &Path, lock: &mut File) -> io::Result<Vec<Entry>> {
+    let mut text = Vec::new();
+    lock.take(MAX_LOCK_BYTES).read_to_end(&mut text)?;
+    Ok(entries(folder, &String::from_utf8_lossy(&text)))
+}
+
+/// The first line of a lock, before this run's files.
+fn begin_lock(folder: &Path, lock: &mut File) -> io::Result<()> {
+    lock.set_len(0)?;
+    lock.seek(SeekFrom::Start(0))?;
+    disk::write(lock, &folder.join(LOCK_NAME), format!("{}\n", heading(folder)).as_bytes())
 }
 
 /// Age after which nobody is writing a half-written file of a run any more.
@@ -218,76 +357,41 @@ pub const MIN_ABANDONED_AGE: Duration = Duration::from_secs(600);
 /// that several runs share, so that none of them locks it.
 pub fn remove_abandoned(folder: &Path, min_age: Duration) {
     files_below(folder, &mut |part| {
-        let age = part.symlink_metadata().and_then(|found| found.modified()).ok();
-        if age.and_then(|time| time.elapsed().ok()).is_some_and(|age| age >= min_age) {
-            remove_part(part);
+        if is_older(part, min_age) {
+            remove_part(part, min_age);
         }
     });
 }
 
-/// Removes a half-written file or folder.
-fn remove_part(part: &Path) {
-    // One that cannot be removed disturbs nobody: it has a name of its own.
-    let is_folder = part.symlink_metadata().is_ok_and(|found| found.is_dir());
-    let _ = if is_folder { std::fs::remove_dir_all(part) } else { std::fs::remove_file(part) };
+/// Whether nothing was written to a file or folder for this time.
+fn is_older(part: &Path, age: Duration) -> bool {
+    let written = part.symlink_metadata().and_then(|found| found.modified()).ok();
+    written.and_then(|time| time.elapsed().ok()).is_some_and(|elapsed| elapsed >= age)
 }
 
-fn lock(folder: &Path) -> Result<Option<File>, FolderError> {
-    let path = folder.join(LOCK_NAME);
-    // The file may vanish between its opening and its locking, when another run ends: then it is opened again.
-    for attempt in 0..100 {
-        // What is no file is not opened: a pipe would wait for its other end. No run has made it, so none ends with it.
-        if std::fs::symlink_metadata(&path).is_ok_and(|found| !found.is_file()) {
-            return Err(FolderError::NoLock { path });
-        }
-        let file = File::options()
-            .create(true)
-            .truncate(false)
-            .write(true)
-            .open(&path)
-            .map_err(|source| FolderError::Create { path: folder.to_path_buf(), source })?;
-        match file.try_lock() {
-            Ok(()) => {}
-            // Somebody may only be looking whether there is a run.
-            Err(TryLockError::WouldBlock) if attempt < LOOKS => {
-                std::thread::sleep(Duration::from_millis(2));
-                continue;
-            }
-            Err(TryLockError::WouldBlock) => break,
-            // A file system without locks.
-            Err(TryLockError::Error(_)) => {
-                let _ = std::fs::remove_file(&path);
-                return Ok(None);
-            }
-        }
-        let is_same = |there: Metadata| file.metadata().is_ok_and(|mine| identity(&mine) == identity(&there));
-        if std::fs::symlink_metadata(&path).is_ok_and(is_same) {
-            return Ok(Some(file));
-        }
+/// Removes a half-written file or folder, unless somebody is still writing it: who does has it locked. Where there are no locks, by
+/// its age.
+fn remove_part(part: &Path, min_age: Duration) {
+    // What is neither was made by no run, and a pipe would wait for its other end.
+    let Ok(found) = part.symlink_metadata() else { return };
+    if !found.is_file() && !found.is_dir() {
+        return;
     }
-    Err(FolderError::InUse { path: folder.to_path_buf() })
-}
-
-/// Whether another process's run is writing into this very folder.
-fn has_run(folder: &Path) -> bool {
-    let path = folder.join(LOCK_NAME);
-    // What is no file is not opened: a pipe would wait for its other end.
-    if !std::fs::symlink_metadata(&path).is_ok_and(|found| found.is_file()) || is_open(folder) {
-        return false;
+    let _ = told(Operation::Look, part);
+    let opened = if cfg!(unix) { File::open(part).ok() } else { None };
+    let is_dead = match opened.as_ref().map(File::try_lock) {
+        Some(Ok(())) => true,
+        Some(Err(std::fs::TryLockError::WouldBlock)) => false,
+        Some(Err(std::fs::TryLockError::Error(_))) | None => is_older(part, min_age),
+    };
+    if is_dead {
+        // One that cannot be removed disturbs nobody: it has a name of its own. The lock is held until it is gone.
+        let _ = if found.is_dir() { disk::remove_dir_all(part) } else { disk::remove_file(part) };
     }
-    let file = File::options().write(true).open(&path);
-    file.is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
+    drop(opened);
 }
 
-/// What tells two files apart; the same for all where the system does not say.
-fn identity(metadata: &Metadata) -> u64 {
-    #[cfg(unix)]
-    return std::os::unix::fs::MetadataExt::ino(metadata);
-    #[cfg(not(unix))]
-    return u64::from(metadata.is_dir());
-}
-
-/// The regular files below a folder, by their paths in it, without those of this module. Calls `part` for each half-written
+/// The regular files below a folder, by their paths in it, without locks and without its own list. Calls `part` for each half-written
 /// file or folder of a run, but for those of runs that are still writing into a folder below. Links are not followed.
 fn files_below(folder: &Path, part: &mut dyn FnMut(&Path)) -> BTreeMap<PathBuf, Stamp> {
     let mut found = BTreeMap::new();
@@ -299,10 +403,10 @@ fn files_below(folder: &Path, part: &mut dyn FnMut(&Path)) -> BTreeMap<PathBuf, 
             let text = file_name.to_string_lossy();
             let Ok(metadata) = entry.path().symlink_metadata() else { continue };
             let name = inner.join(&file_name);
-            if text.starts_with(".raypencil-") {
-                if text.ends_with(".part") {
-                    part(&entry.path());
-                }
+            if is_temporary(&file_name) {
+                part(&entry.path());
+            } else if text.starts_with(TEMPORARY.0) && (depth == 0 || text != MADE_NAME) {
+                // A lock, or the folder's own list.
             } else if metadata.is_dir() && depth < MAX_DEPTH {
                 if !has_run(&entry.path()) && !is_open(&entry.path()) {
                     folders.push((name, depth + 1));
@@ -313,47 +417,6 @@ fn files_below(folder: &Path, part: &mut dyn FnMut(&Path)) -> BTreeMap<PathBuf, 
         }
     }
     found
-}
-
-/// The first line of a list: the folder that it was made in. A folder that is copied, or comes out of an archive, is another one;
-/// where the system does not say, all are alike.
-fn heading(folder: &Path) -> String {
-    #[cfg(unix)]
-    if let Ok(found) = std::fs::metadata(folder) {
-        use std::os::unix::fs::MetadataExt as _;
-        return format!("# made in folder {}:{}", found.dev(), found.ino());
-    }
-    let _ = folder;
-    "# made in a folder".to_string()
-}
-
-/// The list of an earlier run in this folder: paths with digests. A path that leads out of the folder is none of the files found
-/// below it, so nothing is done with it.
-fn made_earlier(folder: &Path) -> Vec<(PathBuf, String)> {
-    let Some(text) = own_list(folder) else { return Vec::new() };
-    let line = |line: &str| {
-        let (sha256, name) = line.split_once("  ")?;
-        Some((PathBuf::from(name), sha256.to_string()))
-    };
-    text.lines().filter(|line| !line.starts_with('#')).filter_map(line).collect()
-}
-
-/// The text of the list in this folder, if it was made here.
-fn own_list(folder: &Path) -> Option<String> {
-    let text = bytes::read_file(&folder.join(MADE_NAME), MAX_MADE_BYTES).ok()?;
-    let text = String::from_utf8_lossy(&text).into_owned();
-    (text.lines().next() == Some(heading(folder).as_str())).then_some(text)
-}
-
-/// What the results in a folder are of, if a run has left some and said so, and one of its files is still as it was made.
-pub fn subject_of(folder: &Path) -> Option<String> {
-    let text = own_list(folder)?;
-    let subject = text.lines().nth(1)?.strip_prefix(SUBJECT)?;
-    let is_there = |(name, sha256): &(PathBuf, String)| {
-        let is_inside = name.components().all(|part| matches!(part, std::path::Component::Normal(_)));
-        is_inside && file_sha256_hex(&folder.join(name)).is_ok_and(|(_, found)| found == *sha256)
-    };
-    made_earlier(folder).iter().any(is_there).then(|| subject.to_string())
 }
 
 /// A text without line ends, for the list.

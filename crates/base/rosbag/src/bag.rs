@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use byteorder::LittleEndian;
 use mcap::records::MessageHeader;
 use mcap::{Attachment, Compression, McapError, WriteOptions, Writer};
-use raypencil_files::{FileError, GrowingFile, write_atomically};
+use raypencil_files::{FileError, GrowingFile, create_dir_all, remove_file, write_atomically};
 
 use crate::definitions::definition;
 use crate::messages::{Message, Stamp};
@@ -65,9 +65,9 @@ impl BagWriter {
     /// The file or folder that could not be made, and the reason.
     pub fn create(folder: &Path) -> Result<Self, FileError> {
         let name = folder.file_name().and_then(|name| name.to_str()).unwrap_or("bag").to_string();
-        std::fs::create_dir_all(folder).map_err(|error| FileError::io(folder, "create", error))?;
+        create_dir_all(folder).map_err(|error| FileError::io(folder, "create", error))?;
         let mark = folder.join("metadata.yaml");
-        match std::fs::remove_file(&mark) {
+        match remove_file(&mark) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => {
                 return Err(FileError::io(&mark, "remove", error));
             }

@@ -10,7 +10,7 @@ use raypencil::campaign::{
     Campaign, CampaignProgress, Merged, OwnScenes, PartName, Shard, campaign_document, merge, run_shard,
     scene_of, write_campaign,
 };
-use raypencil::io::{MIN_ABANDONED_AGE, create_folder, remove_abandoned, write_resolved};
+use raypencil::io::{MIN_ABANDONED_AGE, SharedFolder, create_folder, remove_abandoned, write_resolved};
 
 use crate::args::{self, CampaignCommand, CampaignMerge, CampaignReplay, CampaignRun};
 use crate::console::{Spinner, progress_bar, say};
@@ -85,6 +85,7 @@ fn run(command: &CampaignRun, json: bool) -> Result<Outcome, Trouble> {
     let bar = Bar::new(command.shard.terrains(&campaign).count() as u64);
     let start = Instant::now();
     ask(&command.output, "a campaign")?;
+    let _shared = SharedFolder::begin(&command.output)?;
     remove_abandoned(&command.output, MIN_ABANDONED_AGE);
     let result = run_shard(&campaign, command.shard, &command.output, &bar)?;
     bar.bar.finish_and_clear();

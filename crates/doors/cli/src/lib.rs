@@ -70,7 +70,19 @@ pub(crate) use crate::outcome::{Outcome, Trouble};
 
 /// Runs the command with `arguments`, the program's name first. Renderers come from `registry`.
 pub fn main_with(arguments: impl IntoIterator<Item = OsString>, registry: &Registry) -> ExitCode {
+    live_with_limits_of_files();
     ExitCode::from(run_with(arguments, registry))
+}
+
+/// Makes a file that grows beyond the limit of the shell, `ulimit -f`, an error where it is written. By itself the system ends the
+/// process by a signal, without a word.
+fn live_with_limits_of_files() {
+    #[cfg(unix)]
+    {
+        // Nobody asks for it: the write fails in any case. A handler that cannot be set leaves the process as it was.
+        let was_caught = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
+        let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, was_caught);
+    }
 }
 
 /// The same, with the exit code as a number: for programs in which the command is a function.
@@ -95,10 +107,9 @@ pub fn run_with(arguments: impl IntoIterator<Item = OsString>, registry: &Regist
             return code_after_writing(if asked { 0 } else { 2 });
         }
     };
-    let Everywhere { quiet, json, color, max_memory, force, .. } = arguments.everywhere;
+    let Everywhere { quiet, json, color, max_memory, .. } = arguments.everywhere;
     console::begin(quiet, json, color);
     memory::begin(max_memory);
-    overwriting::begin(force);
     let outcome = run(arguments, registry);
     console::end();
     let code = match outcome {
@@ -129,7 +140,10 @@ fn run(arguments: Arguments, registry: &Registry) -> Result<Outcome, Trouble> {
         let expected = "expected fewer threads, such as --threads 1, or a system that allows more";
         Trouble::Usage(format!("{words}: {threads} threads cannot be started: {error}; {expected}"))
     })?;
-    pool.install(|| dispatch(&arguments, registry))
+    pool.install(|| {
+        overwriting::begin(arguments.everywhere.force);
+        dispatch(&arguments, registry)
+    })
 }
 
 /// The number of worker threads, and what says so: the option, the variable RAYON_NUM_THREADS, or the machine.

@@ -1,23 +1,26 @@
 //! Output folders that hold results of something else are refused, unless `--force` says that these may go.
 
+use std::cell::Cell;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use raypencil::io::{FolderError, OutputFolder, bytes, harmless_line, subject_of};
 use serde_json::Value;
 
-/// Whether `--force` was given.
-static FORCE: AtomicBool = AtomicBool::new(false);
+thread_local! {
+    /// Whether `--force` was given. Of this thread: it begins the command's folders, and each command has threads of its own, also
+    /// where several are called as functions at once.
+    static FORCE: Cell<bool> = const { Cell::new(false) };
+}
 
 /// Maximum size of a file that says what a folder holds, bytes.
 const MAX_BYTES: u64 = 1 << 26;
 
 pub(crate) fn begin(force: bool) {
-    FORCE.store(force, Ordering::Relaxed);
+    FORCE.set(force);
 }
 
 fn is_forced() -> bool {
-    FORCE.load(Ordering::Relaxed)
+    FORCE.get()
 }
 
 /// One name for a scene, a mesh or a pack, however its path is written: a built-in name stays.
@@ -95,4 +98,19 @@ fn refused(folder: &Path, of: String) -> Result<(), FolderError> {
 
 fn document(file: &Path) -> Option<Value> {
     serde_json::from_slice(&bytes::read_file(file, MAX_BYTES).ok()?).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn force_is_that_of_its_own_command() {
+        begin(true);
+        assert!(is_forced());
+        // Another command, which is called meanwhile.
+        std::thread::spawn(|| assert!(!is_forced())).join().unwrap();
+        begin(false);
+        assert!(!is_forced());
+    }
 }

@@ -23,10 +23,16 @@ use crate::subject::subject;
 use crate::{Outcome, Trouble, memory};
 
 pub(crate) fn pack(command: &Pack, json: bool) -> Result<Outcome, Trouble> {
+    // No list of files is left in a pack: its manifest is one.
+    let output = OutputFolder::begin_any(&command.output)?;
+    let outcome = packed_into(command, json)?;
+    output.finish_unlisted()?;
+    Ok(outcome)
+}
+
+fn packed_into(command: &Pack, json: bool) -> Result<Outcome, Trouble> {
     let folder = command.output.display().to_string();
     let label = PackLabel { version: command.pack_version.clone(), licence: command.licence.clone() };
-    // No list of files is left in a pack: its manifest is one.
-    let _locked = OutputFolder::begin_any(&command.output)?;
     if command.input {
         ask_pack(&command.output, PackOf::Input)?;
         write_input(&command.output)?;

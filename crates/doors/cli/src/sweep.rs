@@ -4,7 +4,7 @@ use std::path::Path;
 
 use indicatif::ProgressBar;
 use raypencil::drive::drive_renderer;
-use raypencil::io::{MIN_ABANDONED_AGE, remove_abandoned};
+use raypencil::io::{MIN_ABANDONED_AGE, SharedFolder, remove_abandoned};
 use raypencil::sweep::{
     Axis, Chart, Finished, Part, Sweep, SweepProgress, SweepTable, Task, default_charts, finish, read_plan,
     run_part, sweep_document, write_sweep,
@@ -77,6 +77,7 @@ fn run(command: &args::SweepRun, json: bool, registry: &Registry) -> Result<Outc
     let part = Part { index: command.shard.index, count: command.shard.count };
     let bar = Bar::new(part.runs(sweep.runs()).count() as u64);
     ask_sweep(&command.output, &command.scene)?;
+    let _shared = SharedFolder::begin(&command.output)?;
     remove_abandoned(&command.output, MIN_ABANDONED_AGE);
     run_part(&sweep, part, &contenders, &command.output, &bar)?;
     drop(bar);

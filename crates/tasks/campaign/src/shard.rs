@@ -2,7 +2,9 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use raypencil_files::{FileError, Journal, create_folder, file_sha256_hex, program_sha256};
+use raypencil_files::{
+    FileError, Journal, ask_place, create_folder, file_sha256_hex, program_sha256, remove_dir, remove_file,
+};
 use raypencil_scene_io::InputFile;
 use serde::{Deserialize, Serialize};
 
@@ -67,6 +69,10 @@ pub fn run_shard(
     create_folder(&folder.join("terrains"))?;
     let result = result_file(folder, shard);
     let numbers: Vec<u64> = shard.terrains(campaign).collect();
+    for &number in &numbers {
+        ask_place(&terrain_file(folder, number))?;
+    }
+    ask_place(&result)?;
     let mut records = Vec::with_capacity(numbers.len());
     let mut rays = 0;
     for (done, &number) in (1..).zip(&numbers) {
@@ -170,11 +176,11 @@ fn remove_left(folder: &Path, made: Option<Made>) {
             && is_file
             && LEFT_FOLDERS.iter().any(|left| name.starts_with(left))
             && file_sha256_hex(&file).is_ok_and(|(_, found)| found == sha256)
-            && std::fs::remove_file(&file).is_ok()
+            && remove_file(&file).is_ok()
         {
             // Its folders too, if that was their last file.
             let inner = file.ancestors().skip(1).take_while(|above| *above != folder);
-            inner.take_while(|above| std::fs::remove_dir(above).is_ok()).for_each(drop);
+            inner.take_while(|above| remove_dir(above).is_ok()).for_each(drop);
         }
     }
 }

@@ -269,7 +269,7 @@ pub fn drive_with(
     }
 
     if let Some(recording) = recording {
-        recording.finish(job).map_err(FolderError::from)?;
+        recording.finish(job)?;
     }
     // There is always a first frame: its stance was found when the drive was made.
     let (exposed, pose) = last.ok_or(DriveError::Frames)?;

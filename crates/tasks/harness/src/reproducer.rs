@@ -29,7 +29,7 @@ pub fn write_reproducer(
     reproducer: Reproducer<'_>,
 ) -> Result<[PathBuf; 3], FileError> {
     let path = |ending: &str| folder.join(format!("{}.{ending}", reproducer.name));
-    std::fs::create_dir_all(folder).map_err(|source| FileError::Io {
+    raypencil_files::create_dir_all(folder).map_err(|source| FileError::Io {
         path: folder.to_path_buf(),
         action: "create",
         source,

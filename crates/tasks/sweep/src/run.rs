@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use raypencil_files::{FileError, OutputFolder, bytes, create_folder, write_atomically};
+use raypencil_files::{
+    FileError, OutputFolder, ask_place, bytes, create_folder, remove_dir, write_atomically,
+};
 use raypencil_harness::Contender;
 use raypencil_scene_io::{InputFile, SceneInputs};
 
@@ -49,6 +51,9 @@ pub fn run_part(
     let plan = serde_json::to_string_pretty(sweep).expect("JSON of texts and numbers");
     write_atomically(folder.join(PLAN_FILE), |file| writeln!(file, "{plan}"))?;
     let runs = sweep.order(part);
+    for &run in &runs {
+        ask_place(&record_file(folder, sweep, run))?;
+    }
     let mut worker = Worker::new(sweep, contenders);
     let inputs = SceneInputs::new();
     let mut made = 0;
@@ -77,7 +82,7 @@ fn remove_maps_beyond(folder: &Path, runs: u64) -> Result<(), SweepError> {
         {
             // What a run has not made stays.
             OutputFolder::begin(&entry.path())?.finish()?;
-            let _ = std::fs::remove_dir(entry.path());
+            let _ = remove_dir(&entry.path());
         }
     }
     Ok(())

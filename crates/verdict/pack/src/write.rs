@@ -12,7 +12,7 @@
 
 use std::path::Path;
 
-use raypencil_files::{Attributes, FileError, FolderError, create_folder, put_in_place};
+use raypencil_files::{Attributes, FileError, FolderError, TemporaryFolder, create_folder, put_in_place};
 use raypencil_judge::Certified;
 use raypencil_referee::{Format, Referee};
 use raypencil_scene::{Precision, Progress, Scene, SceneError, SensorId};
@@ -235,11 +235,7 @@ fn write_files(
     let scene = &subject.scene;
     create_folder(folder)?;
     // Written beside: an earlier pack stays whole until this one is.
-    let beside = tempfile::Builder::new()
-        .prefix(".raypencil-")
-        .suffix(".part")
-        .tempdir_in(folder)
-        .map_err(|error| FileError::io(folder, "write", error))?;
+    let beside = TemporaryFolder::create_in(folder).map_err(|error| FileError::io(folder, "write", error))?;
     let (place, folder) = (folder, beside.path());
     progress.stage("writing the scene");
     write_resolved(folder.join("scene.toml"), scene, "terrain.glb")?;

@@ -4,8 +4,9 @@ use super::*;
 use tempfile::TempDir;
 
 fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> =
-        files_below(folder, &mut |_| {}).keys().map(|name| name.display().to_string()).collect();
+    let files = files_below(folder, &mut |_| {});
+    let names = files.keys().filter(|name| !name.ends_with(MADE_NAME));
+    let mut names: Vec<String> = names.map(|name| name.display().to_string()).collect();
     names.sort();
     names
 }
@@ -279,5 +280,127 @@ fn a_file_that_is_put_in_its_place_is_the_run_s_too() {
     output.finish().unwrap();
     assert_eq!(names(folder), ["a"]);
     run(folder, &["b"]);
+    assert_eq!(names(folder), ["b"]);
+}
+
+#[test]
+fn what_a_run_that_died_had_put_in_place_goes_with_the_next() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    std::fs::write(folder.join("mine"), "mine").unwrap();
+    run(folder, &["a", "b"]);
+    // It has written half of its files, and changed one of the earlier run.
+    let died = OutputFolder::begin(folder).unwrap();
+    for (name, text) in [("a", "another"), ("maps", "c"), ("d", "d")] {
+        write_atomically(folder.join(name), |file| file.write_all(text.as_bytes())).unwrap();
+    }
+    let lock = std::fs::read(folder.join(LOCK_NAME)).unwrap();
+    let list = std::fs::read(folder.join(MADE_NAME)).unwrap();
+    drop(died);
+    std::fs::write(folder.join(MADE_NAME), list).unwrap();
+    // The last line was cut off.
+    std::fs::write(folder.join(LOCK_NAME), [lock, b"\n0123  mi".to_vec()].concat()).unwrap();
+    std::fs::write(folder.join("d"), "changed").unwrap();
+    // A run that dies at once keeps the knowledge.
+    drop(OutputFolder::begin(folder).unwrap());
+    run(folder, &["z"]);
+    assert_eq!(names(folder), ["d", "mine", "z"]);
+    assert!(!folder.join(LOCK_NAME).exists());
+}
+
+#[test]
+fn what_a_run_that_failed_has_written_goes_with_the_next() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    run(folder, &["a", "b"]);
+    let failed = OutputFolder::begin(folder).unwrap();
+    for name in ["b", "c"] {
+        write_atomically(folder.join(name), |file| file.write_all(b"failed")).unwrap();
+    }
+    drop(failed);
+    assert_eq!(names(folder), ["a", "b", "c"]);
+    run(folder, &["a"]);
+    assert_eq!(names(folder), ["a"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_file_that_somebody_is_writing_is_nobody_s_to_remove() {
+    let folder = TempDir::new().unwrap();
+    let (above, below) = (folder.path(), folder.path().join("sub"));
+    create_folder(&below).unwrap();
+    // By a run that shares its folder with others, and locks none.
+    let mut growing = crate::GrowingFile::create(below.join("log.csv")).unwrap();
+    let staged = crate::TemporaryFolder::create_in(&below).unwrap();
+    growing.add("a").unwrap();
+    run(above, &["a"]);
+    remove_abandoned(above, Duration::ZERO);
+    assert!(staged.path().exists());
+    growing.finish().unwrap();
+    drop(staged);
+    assert_eq!(names(above), ["a", "sub/log.csv"]);
+}
+
+#[test]
+fn what_a_later_run_has_made_in_a_folder_below_is_that_run_s() {
+    let folder = TempDir::new().unwrap();
+    let (above, below) = (folder.path(), folder.path().join("sub"));
+    run(above, &["a", "sub/b", "sub/c"]);
+    // The same file, made by a run into the folder below.
+    std::fs::write(below.join("b"), "sub/b").unwrap();
+    let output = OutputFolder::begin(&below).unwrap();
+    write_atomically(below.join("b"), |file| file.write_all(b"sub/b")).unwrap();
+    output.finish().unwrap();
+    run(above, &["a"]);
+    assert_eq!(names(above), ["a", "sub/b"]);
+}
+
+#[test]
+fn a_run_writes_nothing_into_a_folder_below_into_which_another_one_writes() {
+    let folder = TempDir::new().unwrap();
+    let (above, below) = (folder.path(), folder.path().join("sub"));
+    let lock = |folder: &Path| {
+        let lock =
+            File::options().create(true).truncate(false).write(true).open(folder.join(LOCK_NAME)).unwrap();
+        lock.lock().unwrap();
+        lock
+    };
+    create_folder(&below).unwrap();
+    let theirs = lock(&below);
+    let output = OutputFolder::begin(above).unwrap();
+    let write = |name: &str| write_atomically(above.join(name), |file| file.write_all(b"a"));
+    write("a").unwrap();
+    let error = write("sub/a").unwrap_err().to_string();
+    assert!(error.contains("another run is writing into") && error.contains("sub"), "{error}");
+    drop(theirs);
+    write("sub/a").unwrap();
+    output.finish().unwrap();
+    assert_eq!(names(above), ["a", "sub/a"]);
+}
+
+#[test]
+fn a_pack_leaves_no_list_and_nothing_of_an_earlier_one() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    let pack = |names: &[&str]| {
+        let output = OutputFolder::begin_any(folder).unwrap();
+        for name in names {
+            write_atomically(folder.join(name), |file| file.write_all(name.as_bytes())).unwrap();
+        }
+        output
+    };
+    run(folder, &["report"]);
+    // One that fails, and one that does not.
+    drop(pack(&["a", "b"]));
+    pack(&["a"]).finish_unlisted().unwrap();
+    assert_eq!(names(folder), ["a"]);
+    assert!(!folder.join(MADE_NAME).exists() && !folder.join(LOCK_NAME).exists());
+    // An earlier pack's files, which its manifest named, are claimed before the manifest goes.
+    let died = pack(&[]);
+    crate::claim(&folder.join("a"), &file_sha256_hex(&folder.join("a")).unwrap().1).unwrap();
+    let lock = std::fs::read(folder.join(LOCK_NAME)).unwrap();
+    drop(died);
+    std::fs::write(folder.join(LOCK_NAME), lock).unwrap();
+    pack(&["b"]).finish_unlisted().unwrap();
     assert_eq!(names(folder), ["b"]);
 }

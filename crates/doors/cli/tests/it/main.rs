@@ -1,4 +1,5 @@
 //! The tests of this crate, one program.
 
 mod command;
+mod folder_walk;
 mod malformed;

@@ -1,9 +1,10 @@
 //! All files of a recording, in one folder.
 
-use std::io;
 use std::path::{Path, PathBuf};
 
-use raypencil_files::{FileError, FolderError, begin_output_folder, create_folder, write_atomically};
+use raypencil_files::{
+    FileError, FolderError, OutputFolder, begin_output_folder, create_folder, write_atomically,
+};
 use raypencil_rover::{CameraImage, DriveFrame, ElevationMap, Exposure};
 
 use crate::job::DriveJob;
@@ -36,19 +37,21 @@ pub(crate) struct Recording {
     start_elevation: Option<f64>,
     /// First failure to write an image. The camera's pipeline has no way to report it.
     failure: Option<FileError>,
+    /// The recording's own list: a drive without a list of its own has one.
+    output: OutputFolder,
 }
 
 impl Recording {
-    /// Begins a recording in the folder `recording` of a drive's folder, which loses its mark of completeness. What an
-    /// earlier recording left there is removed.
+    /// Begins a recording in the folder `recording` of a drive's folder, which loses its mark of completeness, as the recording
+    /// does. What an earlier recording has made there, and this one does not make again, is removed at the end.
     ///
     /// # Errors
     /// The folder or file that could not be made, and the reason.
     pub(crate) fn begin(drive: &Path, job: &DriveJob, contents: RecordContents) -> Result<Self, FolderError> {
         begin_output_folder(drive, "summary.json")?;
         let folder = drive.join(FOLDER);
-        create_folder(&folder)?;
-        remove_earlier(&folder)?;
+        let output = OutputFolder::begin(&folder)?;
+        begin_output_folder(&folder, LAST)?;
         if contents.png || contents.npy {
             create_folder(&folder.join("images"))?;
         }
@@ -65,6 +68,7 @@ impl Recording {
             contents,
             start_elevation: None,
             failure: None,
+            output,
         })
     }
 
@@ -107,48 +111,16 @@ impl Recording {
     }
 
     /// Puts all files in their places.
-    pub(crate) fn finish(self, job: &DriveJob) -> Result<(), FileError> {
+    pub(crate) fn finish(self, job: &DriveJob) -> Result<(), FolderError> {
         self.poses.finish()?;
         self.sectors.finish()?;
         self.points.map_or(Ok(()), PointFiles::finish)?;
         self.maps.map_or(Ok(()), MapFiles::finish)?;
         let setup = setup_json(job, self.start_elevation.unwrap_or(0.0));
         self.bag.map_or(Ok(()), |bag| bag.finish(job, &setup))?;
-        write_atomically(self.folder.join(LAST), |file| file.write_all(setup.as_bytes()))
+        write_atomically(self.folder.join(LAST), |file| file.write_all(setup.as_bytes()))?;
+        self.output.finish()
     }
-}
-
-/// Removes the files of an earlier recording, and nothing else: images and maps of frames that this drive may not have.
-fn remove_earlier(folder: &Path) -> Result<(), FolderError> {
-    let failed = |path: &Path, source| FolderError::RemoveEarlier { path: path.to_path_buf(), source };
-    let names = [
-        "setup.json",
-        "stripes.npy",
-        "points.npy",
-        "points.csv",
-        "maps.csv",
-        "rosbag/metadata.yaml",
-        "rosbag/rosbag_0.mcap",
-    ];
-    let mut stale: Vec<PathBuf> = names.iter().map(|name| folder.join(name)).collect();
-    for part in ["images", "maps"] {
-        let Ok(entries) = std::fs::read_dir(folder.join(part)) else { continue };
-        stale.extend(entries.filter_map(Result::ok).map(|entry| entry.path()).filter(|path| is_ours(path)));
-    }
-    for path in stale {
-        match std::fs::remove_file(&path) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(failed(&path, error)),
-            _ => {}
-        }
-    }
-    Ok(())
-}
-
-/// Whether a file in `images` or `maps` has a name that recordings give: six digits, a dash, and a known ending.
-fn is_ours(path: &Path) -> bool {
-    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-    let begins = name.len() > 7 && name.as_bytes()[..6].iter().all(u8::is_ascii_digit) && &name[6..7] == "-";
-    begins && (name.ends_with(".png") || name.ends_with(".npy"))
 }
 
 #[cfg(test)]

@@ -76,7 +76,7 @@ fn every_file_has_what_the_frames_had() {
     assert_eq!((run.frames.len(), images), (7, 2 * (6 * 2 + 6 * 2)));
     let array = read_npy(named("images/000004-beam1.npy"), &Limits::default()).unwrap();
     let file = std::fs::File::open(named("images/000004-beam1.png")).unwrap();
-    let mut reader = png::Decoder::new(io::BufReader::new(file)).read_info().unwrap();
+    let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().unwrap();
     let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
     reader.next_frame(&mut bytes).unwrap();
     let grey: Vec<u16> = bytes.chunks_exact(2).map(|pair| u16::from_be_bytes([pair[0], pair[1]])).collect();
@@ -139,10 +139,16 @@ fn a_new_recording_removes_what_the_last_one_left_and_nothing_else() {
     assert!(recording.join("setup.json").is_file() && recording.join("stripes.npy").is_file());
     let foreign = recording.join("images/notes.txt");
     std::fs::write(&foreign, "mine").unwrap();
+    // Its name is one that a recording could give, and it is none of a recording's.
+    let like_ours = recording.join("images/000007-notes.png");
+    std::fs::write(&like_ours, "mine").unwrap();
     // Begun and given up: no file says that it is complete.
     drop(Recording::begin(folder.path(), &job, RecordContents::default()).unwrap());
-    assert!(!recording.join("setup.json").exists() && !recording.join("stripes.npy").exists());
-    let left: Vec<_> =
+    assert!(!recording.join("setup.json").exists() && recording.join("stripes.npy").exists());
+    recorded(&job, folder.path(), RecordContents::default(), None);
+    assert!(recording.join("setup.json").exists() && !recording.join("points.npy").exists());
+    let mut left: Vec<_> =
         std::fs::read_dir(recording.join("images")).unwrap().map(|e| e.unwrap().path()).collect();
-    assert_eq!(left, [foreign]);
+    left.sort();
+    assert_eq!(left, [like_ours, foreign]);
 }

@@ -1,8 +1,8 @@
 //! Writes a manifest, and removes an earlier pack.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use raypencil_files::{FileError, file_sha256_hex, write_atomically};
+use raypencil_files::{FileError, claim, file_sha256_hex, remove_file, write_atomically};
 
 use crate::manifest::document::{FileRole, MANIFEST_NAME, Manifest, ManifestFile, pack_fault};
 use crate::manifest::path::resolve_inside;
@@ -57,23 +57,23 @@ impl Manifest {
             Ok(_) => {}
         }
         let earlier = read_manifest(folder)?;
+        let is_own = |(file, entry): &(PathBuf, &ManifestFile)| {
+            file_sha256_hex(file).is_ok_and(|found| found == (entry.bytes, entry.sha256.clone()))
+        };
+        // A file that no longer exists cannot be resolved, and needs no removal.
+        let listed = earlier.files.iter();
+        let listed = listed.filter_map(|entry| Some((resolve_inside(folder, &entry.path).ok()?, entry)));
+        let own: Vec<(PathBuf, &ManifestFile)> = listed.filter(is_own).collect();
+        // Whoever dies after the manifest is gone leaves files that nobody would know otherwise.
+        own.iter().try_for_each(|(file, entry)| claim(file, &entry.sha256))?;
         Self::withdraw(folder)?;
-        for entry in &earlier.files {
-            // A file that no longer exists cannot be resolved, and needs no removal.
-            let Ok(file) = resolve_inside(folder, &entry.path) else { continue };
-            let is_own =
-                file_sha256_hex(&file).is_ok_and(|found| found == (entry.bytes, entry.sha256.clone()));
-            if is_own {
-                remove(&file)?;
-            }
-        }
-        Ok(())
+        own.iter().try_for_each(|(file, _)| remove(file))
     }
 }
 
 /// Removes a file; one that is not there is no error.
 fn remove(path: &Path) -> Result<(), FileError> {
-    match std::fs::remove_file(path) {
+    match remove_file(path) {
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
             Err(FileError::io(path, "remove", error))
         }

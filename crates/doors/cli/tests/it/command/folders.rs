@@ -71,6 +71,70 @@ fn a_folder_into_which_another_run_writes_is_refused() {
 }
 
 #[test]
+fn a_folder_in_place_of_a_record_is_named_before_anything_is_computed() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    scene(folder, 1);
+    let sweep =
+        ["sweep", "scene.toml", "--set", "camera.pitch_down_deg=30,40", "--do", "render", "-o", "out"];
+    screen(folder, &sweep, 0);
+    let records = names(&folder.join("out/runs"));
+    let last = folder.join("out/runs").join(&records[1]);
+    for record in &records {
+        fs::remove_file(folder.join("out/runs").join(record)).unwrap();
+    }
+    fs::create_dir(&last).unwrap();
+    let words = [".json: cannot write: it is a folder; expected a file, or nothing: remove it"];
+    assert_trouble(&raypencil(folder, &sweep), &words);
+    // Nor was the other run made.
+    assert_eq!(names(&folder.join("out/runs")), records[1..]);
+    fs::remove_dir(&last).unwrap();
+    screen(folder, &sweep, 0);
+    fs::create_dir_all(folder.join("campaign/terrains/terrain-000000.json")).unwrap();
+    let campaign = ["campaign", "--terrains", "1", "-o", "campaign"];
+    assert_trouble(&raypencil(folder, &campaign), &words);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_file_beyond_the_limit_of_the_shell_is_an_error() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    scene(folder, 1);
+    let program = env!("CARGO_BIN_EXE_raypencil");
+    let line = format!("ulimit -f 8; exec '{program}' validate scene.toml -o out");
+    let output = std::process::Command::new("sh").args(["-c", &line]).current_dir(folder).output().unwrap();
+    assert_trouble(&output, &["out/report.html: cannot write: File too large"]);
+    // What was written is listed; nothing is half-written, and there is no mark.
+    let mut left: Vec<String> = fs::read_dir(folder.join("out"))
+        .unwrap()
+        .map(|one| one.unwrap().file_name().into_string().unwrap())
+        .collect();
+    left.sort();
+    assert_eq!(left, [".raypencil-made", "scanline", "tracer"]);
+}
+
+#[test]
+fn a_sweep_has_its_folder_with_those_who_share_it_alone() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    scene(folder, 1);
+    let sweep =
+        ["sweep", "scene.toml", "--set", "camera.pitch_down_deg=30", "--do", "render", "-o", "out/sub"];
+    let other = raypencil::io::SharedFolder::begin(&folder.join("out/sub")).unwrap();
+    screen(folder, &sweep, 0);
+    let line = ["validate", "scene.toml", "-o", "out/sub"];
+    assert_trouble(&raypencil(folder, &line), &["sub: another run is writing into it"]);
+    // One above leaves it alone.
+    screen(folder, &["validate", "scene.toml", "-o", "out"], 0);
+    drop(other);
+    let above = raypencil::io::OutputFolder::begin(&folder.join("out")).unwrap();
+    assert_trouble(&raypencil(folder, &sweep), &["out: another run is writing into it"]);
+    drop(above);
+    screen(folder, &sweep, 0);
+}
+
+#[test]
 fn a_pack_is_not_mixed_with_maps() {
     let folder = TempDir::new().unwrap();
     let folder = folder.path();

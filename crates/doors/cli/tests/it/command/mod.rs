@@ -8,6 +8,7 @@ mod check;
 mod diagnosis;
 mod diff;
 mod drive;
+mod folder_faults;
 mod folders;
 mod forged_packs;
 mod help;

@@ -1,0 +1,277 @@
+//! A command that writes a folder, with a fault at each of its operations on the disk: one fails, or the process dies there. After
+//! that nothing of somebody else's may be touched, the mark must be true, and the next run must leave what it leaves alone.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
+
+use raypencil::harness::contender;
+use raypencil::io::{Operation, watch};
+
+/// What happens to the operation of a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fault {
+    /// Nothing.
+    None,
+    /// It fails.
+    Fails(usize),
+    /// The process dies before it.
+    Dies(usize),
+}
+
+/// A command that writes into a folder.
+#[derive(Debug, Clone, Copy)]
+pub struct Walked {
+    /// Its name.
+    pub name: &'static str,
+    /// Its words after that. `SCENE`, `MESH`, `RAYS` and `OUT` stand for paths.
+    pub words: &'static str,
+    /// The file that is written last, and says that all others are there.
+    pub mark: Option<&'static str>,
+    /// Folder whose files belong to no single run.
+    pub shared: Option<&'static str>,
+}
+
+/// The commands.
+pub const WALKED: [Walked; 7] = [
+    Walked { name: "validate", words: "SCENE -o OUT", mark: Some("summary.json"), shared: None },
+    Walked {
+        name: "render",
+        words: "SCENE --with tracer --format exr-each -o OUT",
+        mark: Some("summary.json"),
+        shared: None,
+    },
+    Walked {
+        name: "drive",
+        words: "SCENE --record png,points,maps -o OUT",
+        mark: Some("summary.json"),
+        shared: None,
+    },
+    Walked {
+        name: "sweep",
+        words: "SCENE --set camera.pitch_down_deg=30,40 --do render -o OUT",
+        mark: None,
+        shared: Some("runs"),
+    },
+    Walked { name: "cast", words: "MESH RAYS --any -o OUT", mark: Some("summary.json"), shared: None },
+    Walked { name: "pack", words: "SCENE --no-bench -o OUT", mark: Some("manifest.json"), shared: None },
+    Walked { name: "scene", words: "show SCENE -o OUT", mark: None, shared: None },
+];
+
+/// Somebody else's files, in the folder of the runs and beside it.
+const FOREIGN: [&str; 5] = [
+    "beside.txt",
+    "out/notes.txt",
+    "out/beam-9.exr",
+    "out/maps/theirs.exr",
+    "out/recording/images/000001-theirs.png",
+];
+
+/// Files by their paths in a folder.
+type Files = BTreeMap<PathBuf, Vec<u8>>;
+
+/// Runs a command once under a fault: its exit code, and its operations in order. `None` for the code of one that died.
+pub type Run<'a> = &'a dyn Fn(&Path, &[String], Fault) -> (Option<u8>, Vec<String>);
+
+/// What a walk has met.
+#[derive(Debug, Default)]
+pub struct Figures {
+    /// Operations of one run.
+    pub operations: usize,
+    /// Runs with a fault.
+    pub states: usize,
+    /// What did not hold.
+    pub broken: Vec<String>,
+}
+
+/// A scene of a few rays, which has one beam less with each phase; a mesh, and rays.
+fn inputs(tree: &Path, phase: usize) {
+    let beam = "[[beam]]\ncolumns = 8\nrows = 2\n".repeat(3 - phase);
+    let scene = format!(
+        "version = 1\n[vehicle]\nposition_m = [-0.6, 0]\n[camera]\nwidth_px = 8\nheight_px = 6\npixel_pitch_um = 1000\n\
+         pitch_down_deg = 40\n[terrain]\nbuiltin = \"pyramids\"\n[drive]\nwaypoints_m = [[0.2, 0]]\nframes_per_s = 2\n\
+         scans = false\n{beam}"
+    );
+    fs::write(tree.join("scene.toml"), scene).unwrap();
+    fs::write(tree.join("mesh.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let rays: String = (0..3 - phase).map(|ray| format!("0.{},0.1,1,0,0,-1,0,9\n", ray + 1)).collect();
+    fs::write(tree.join("rays.csv"), format!("ox,oy,oz,dx,dy,dz,t_min,t_max\n{rays}")).unwrap();
+}
+
+/// The tree anew, at the same place: reports name it.
+fn begin(tree: &Path) {
+    let _ = fs::remove_dir_all(tree);
+    for name in FOREIGN {
+        let path = tree.join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, "mine").unwrap();
+    }
+}
+
+/// The arguments of a command.
+fn words(walked: &Walked, tree: &Path) -> Vec<String> {
+    let path = |word: &str| match word {
+        "SCENE" => tree.join("scene.toml").display().to_string(),
+        "MESH" => tree.join("mesh.obj").display().to_string(),
+        "RAYS" => tree.join("rays.csv").display().to_string(),
+        "OUT" => tree.join("out").display().to_string(),
+        word => word.to_string(),
+    };
+    let given = walked.words.split(' ').map(path);
+    ["raypencil", walked.name]
+        .map(String::from)
+        .into_iter()
+        .chain(given)
+        .chain(["--threads=1".into()])
+        .collect()
+}
+
+/// The files in the folder of the runs. Of a list only its begin differs, which names the folder.
+fn files(tree: &Path) -> Files {
+    let out = tree.join("out");
+    let mut found = Files::new();
+    let mut folders = vec![out.clone()];
+    while let Some(folder) = folders.pop() {
+        for path in fs::read_dir(folder).into_iter().flatten().map(|entry| entry.unwrap().path()) {
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let mut bytes = fs::read(&path).unwrap();
+            if path.ends_with(".raypencil-made") {
+                // Digests of files that say how long something took differ, too.
+                bytes.clear();
+            }
+            found.insert(path.strip_prefix(&out).unwrap().to_path_buf(), bytes);
+        }
+    }
+    found
+}
+
+/// What a command leaves alone, and which of its files say how long it took.
+struct Alone {
+    files: Files,
+    varying: BTreeSet<PathBuf>,
+}
+
+impl Alone {
+    fn of(walked: &Walked, tree: &Path, phase: usize, run: Run<'_>) -> Self {
+        let once = || {
+            begin(tree);
+            inputs(tree, phase);
+            let (code, _) = run(tree, &words(walked, tree), Fault::None);
+            assert!(code.is_some_and(|code| code < 2), "{} by itself: {code:?}", walked.name);
+            files(tree)
+        };
+        let (files, again) = (once(), once());
+        assert_eq!(files.keys().collect::<Vec<_>>(), again.keys().collect::<Vec<_>>());
+        let varying = files.iter().filter(|(name, bytes)| again.get(*name) != Some(*bytes));
+        let varying = varying.map(|(name, _)| name.clone()).collect();
+        Self { files, varying }
+    }
+
+    /// The first file that is not there as it is when the command runs alone.
+    fn first_other(&self, found: &Files) -> Option<&PathBuf> {
+        let is_as = |(name, bytes): &(&PathBuf, &Vec<u8>)| {
+            found.get(*name).is_some_and(|found| found == *bytes || self.varying.contains(*name))
+        };
+        self.files.iter().find(|file| !is_as(file)).map(|(name, _)| name)
+    }
+}
+
+/// Walks through operations of a command, which are chosen by their number in all. An earlier run has made more files, and a later
+/// one makes fewer.
+pub fn walk(walked: &Walked, tree: &Path, run: Run<'_>, choose: &dyn Fn(usize) -> Vec<usize>) -> Figures {
+    let alone: Vec<Alone> = (0..3).map(|phase| Alone::of(walked, tree, phase, run)).collect();
+    let go = |phase: usize, fault: Fault| {
+        inputs(tree, phase);
+        run(tree, &words(walked, tree), fault)
+    };
+    let earlier = || {
+        begin(tree);
+        go(0, Fault::None)
+    };
+    earlier();
+    let operations = go(1, Fault::None).1;
+    let mut figures = Figures { operations: operations.len(), ..Figures::default() };
+    for number in choose(operations.len()) {
+        for fault in [Fault::Fails(number), Fault::Dies(number)] {
+            earlier();
+            let (code, _) = go(1, fault);
+            figures.states += 1;
+            let operation = operations[number].as_str();
+            let mut broken = |what: String| {
+                figures.broken.push(format!("{}: {fault:?}, {operation}: {what}", walked.name));
+            };
+            // What fails is told of, but where something could not be removed that disturbs nobody.
+            let is_removal = operation.starts_with("Remove");
+            if matches!(fault, Fault::Fails(_)) && code != Some(2) && !is_removal {
+                broken(format!("exit code {code:?}"));
+            }
+            let found = files(tree);
+            if walked.mark.is_some_and(|mark| found.contains_key(Path::new(mark))) {
+                let is_locked = found.contains_key(Path::new(".raypencil-lock"));
+                let beside = |phase: usize| {
+                    let is_own = |name: &&PathBuf| alone[phase].files.contains_key(*name);
+                    found.keys().find(|name| !is_locked && !is_own(name))
+                };
+                let other = |phase: usize| alone[phase].first_other(&found).or_else(|| beside(phase));
+                let others = [0, 1].map(other);
+                if let [Some(first), Some(second)] = others {
+                    broken(format!("marked, but other are {} and {}", first.display(), second.display()));
+                }
+            }
+            go(2, Fault::None);
+            let found = files(tree);
+            if let Some(other) = alone[2].first_other(&found) {
+                broken(format!("the next run has another {}", other.display()));
+            }
+            let is_shared = |name: &Path| walked.shared.is_some_and(|shared| name.starts_with(shared));
+            for name in found.keys().filter(|name| !alone[2].files.contains_key(*name) && !is_shared(name)) {
+                broken(format!("the next run leaves {}", name.display()));
+            }
+            for name in FOREIGN {
+                if fs::read(tree.join(name)).ok().as_deref() != Some(b"mine") {
+                    broken(format!("somebody else's {name} is lost"));
+                }
+            }
+        }
+    }
+    figures
+}
+
+/// Runs a command in this process, with a fault. `die` is called where the process dies. If it comes back, death is played: nothing
+/// that is done later changes the disk.
+pub fn run_until(
+    tree: &Path,
+    words: &[String],
+    fault: Fault,
+    die: &'static (dyn Fn() + Sync),
+) -> (Option<u8>, Vec<String>) {
+    let seen = Arc::new(Mutex::new(Vec::new()));
+    let number = AtomicUsize::new(0);
+    let (into, root) = (seen.clone(), tree.to_path_buf());
+    let watcher = move |operation: Operation, path: &Path| {
+        // What is looked at changes nothing.
+        if operation == Operation::Look {
+            return Ok(());
+        }
+        let name = path.strip_prefix(&root).unwrap_or(path).display();
+        into.lock().unwrap().push(format!("{operation:?} {name}"));
+        let number = number.fetch_add(1, Ordering::Relaxed);
+        let is_dead = matches!(fault, Fault::Dies(at) if number >= at);
+        if is_dead {
+            die();
+        }
+        let is_hit = is_dead || fault == Fault::Fails(number);
+        if is_hit { Err(io::Error::from(io::ErrorKind::StorageFull)) } else { Ok(()) }
+    };
+    let watch = watch(tree, Arc::new(watcher));
+    let code = raypencil_cli::run_with(words.iter().map(Into::into), &contender);
+    drop(watch);
+    let seen = std::mem::take(&mut *seen.lock().unwrap());
+    (Some(code), seen)
+}
