@@ -353,14 +353,10 @@ fn begin_lock(folder: &Path, lock: &mut File) -> io::Result<()> {
 /// Age after which nobody is writing a half-written file of a run any more.
 pub const MIN_ABANDONED_AGE: Duration = Duration::from_secs(600);
 
-/// Removes what killed runs have left half-written below a folder, if nothing was written to it for `min_age`: for folders
-/// that several runs share, so that none of them locks it.
+/// Removes what killed runs have left half-written below a folder that several runs share: what nobody has locked. Where the system
+/// does not say that, what nothing was written to for `min_age`.
 pub fn remove_abandoned(folder: &Path, min_age: Duration) {
-    files_below(folder, &mut |part| {
-        if is_older(part, min_age) {
-            remove_part(part, min_age);
-        }
-    });
+    files_below(folder, &mut |part| remove_part(part, min_age));
 }
 
 /// Whether nothing was written to a file or folder for this time.

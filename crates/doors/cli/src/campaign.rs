@@ -15,7 +15,7 @@ use raypencil::io::{MIN_ABANDONED_AGE, SharedFolder, create_folder, remove_aband
 use crate::args::{self, CampaignCommand, CampaignMerge, CampaignReplay, CampaignRun};
 use crate::console::{Spinner, progress_bar, say};
 use crate::lines::Lines;
-use crate::overwriting::ask;
+use crate::overwriting::ask_campaign;
 use crate::{Outcome, Trouble};
 
 pub(crate) fn campaign(command: &args::Campaign, json: bool) -> Result<Outcome, Trouble> {
@@ -84,7 +84,7 @@ fn run(command: &CampaignRun, json: bool) -> Result<Outcome, Trouble> {
     let campaign = campaign.with_parts(&command.parts)?;
     let bar = Bar::new(command.shard.terrains(&campaign).count() as u64);
     let start = Instant::now();
-    ask(&command.output, "a campaign")?;
+    ask_campaign(&command.output)?;
     let _shared = SharedFolder::begin(&command.output)?;
     remove_abandoned(&command.output, MIN_ABANDONED_AGE);
     let result = run_shard(&campaign, command.shard, &command.output, &bar)?;

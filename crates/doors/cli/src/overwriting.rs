@@ -1,6 +1,7 @@
 //! Output folders that hold results of something else are refused, unless `--force` says that these may go.
 
 use std::cell::Cell;
+use std::fmt;
 use std::path::Path;
 
 use raypencil::io::{FolderError, OutputFolder, bytes, harmless_line, subject_of};
@@ -30,24 +31,65 @@ pub(crate) fn subject(given: &str) -> String {
 
 /// Begins the output folder of a run on a scene, a mesh or a pack.
 pub(crate) fn output_folder(folder: &Path, of: &str) -> Result<OutputFolder, FolderError> {
+    if let Some(parts) = parts_in(folder).filter(|_| !is_forced()) {
+        return Err(FolderError::IsOfOther { path: folder.to_path_buf(), of: parts.to_string() });
+    }
     OutputFolder::begin_of(folder, &subject(of), is_forced())
 }
 
-/// Refuses a folder that holds results of a run on something else.
-pub(crate) fn ask(folder: &Path, of: &str) -> Result<(), FolderError> {
-    match subject_of(folder).filter(|held| *held != subject(of) && !is_forced()) {
-        Some(of) => Err(FolderError::IsOfOther { path: folder.to_path_buf(), of }),
-        None => Ok(()),
+/// What several runs made together in their folder, which has no list of it.
+enum Parts {
+    /// Of a scene.
+    Sweep(String),
+    Campaign,
+}
+
+impl fmt::Display for Parts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Sweep(scene) => write!(f, "a sweep of {}", harmless_line(scene)),
+            Self::Campaign => f.write_str("a campaign"),
+        }
     }
+}
+
+fn parts_in(folder: &Path) -> Option<Parts> {
+    let plan = document(&folder.join("sweep.json"));
+    if let Some(scene) = plan.and_then(|plan| Some(plan["scene"].as_str()?.to_string())) {
+        return Some(Parts::Sweep(scene));
+    }
+    let has_record = |folder: &Path, begin: &str| {
+        let names = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.file_name());
+        names.map(|name| name.to_string_lossy().into_owned()).any(|name| {
+            name.strip_prefix(begin)
+                .and_then(|rest| rest.strip_suffix(".json"))
+                .is_some_and(|rest| !rest.is_empty())
+        })
+    };
+    let is_campaign = has_record(&folder.join("terrains"), "terrain-") || has_record(folder, "shard-");
+    is_campaign.then_some(Parts::Campaign)
+}
+
+/// Refuses a folder for a campaign that holds results of another command. Its records say of which campaign they are.
+pub(crate) fn ask_campaign(folder: &Path) -> Result<(), FolderError> {
+    ask_parts(folder, |parts| matches!(parts, Parts::Campaign))
 }
 
 /// The same for a sweep, whose plan says what it is of.
 pub(crate) fn ask_sweep(folder: &Path, of: &str) -> Result<(), FolderError> {
-    ask(folder, of)?;
-    let held =
-        document(&folder.join("sweep.json")).and_then(|plan| Some(plan["scene"].as_str()?.to_string()));
-    match held.filter(|held| subject(held) != subject(of) && !is_forced()) {
-        Some(held) => refused(folder, format!("a sweep of {}", harmless_line(&held))),
+    ask_parts(folder, |parts| matches!(parts, Parts::Sweep(held) if subject(held) == subject(of)))
+}
+
+fn ask_parts(folder: &Path, is_same: impl Fn(&Parts) -> bool) -> Result<(), FolderError> {
+    if is_forced() {
+        return Ok(());
+    }
+    // Only runs that have the folder for themselves leave a list.
+    if let Some(held) = subject_of(folder) {
+        return refused(folder, format!("another command on {held}"));
+    }
+    match parts_in(folder).filter(|parts| !is_same(parts)) {
+        Some(parts) => refused(folder, parts.to_string()),
         None => Ok(()),
     }
 }
@@ -67,7 +109,7 @@ pub(crate) fn ask_pack(folder: &Path, of: PackOf) -> Result<(), FolderError> {
     if is_forced() {
         return Ok(());
     }
-    if let Some(held) = subject_of(folder) {
+    if let Some(held) = subject_of(folder).or_else(|| parts_in(folder).map(|parts| parts.to_string())) {
         return refused(folder, held);
     }
     if let Some(held) = document(&folder.join("manifest.json")) {

@@ -162,14 +162,17 @@ fn a_run_that_writes_nothing_leaves_no_folder() {
 }
 
 #[test]
-fn only_what_is_old_is_abandoned() {
+fn only_what_nobody_writes_any_more_is_abandoned() {
     let folder = TempDir::new().unwrap();
     let part = folder.path().join(".raypencil-abc.part");
     std::fs::write(&part, "half").unwrap();
     std::fs::write(folder.path().join("whole"), "whole").unwrap();
+    let writes = File::open(&part).unwrap();
+    writes.lock().unwrap();
     remove_abandoned(folder.path(), Duration::from_secs(600));
     assert!(part.exists());
-    remove_abandoned(folder.path(), Duration::ZERO);
+    drop(writes);
+    remove_abandoned(folder.path(), if cfg!(unix) { Duration::from_secs(600) } else { Duration::ZERO });
     assert!(!part.exists());
     assert_eq!(names(folder.path()), ["whole"]);
     remove_abandoned(&folder.path().join("nowhere"), Duration::ZERO);

@@ -24,11 +24,11 @@ pub enum Fault {
 
 /// A command that writes into a folder.
 #[derive(Debug, Clone, Copy)]
-pub struct Walked {
+pub struct Walked<'a> {
     /// Its name.
     pub name: &'static str,
     /// Its words after that. `SCENE`, `MESH`, `RAYS` and `OUT` stand for paths.
-    pub words: &'static str,
+    pub words: &'a str,
     /// The file that is written last, and says that all others are there.
     pub mark: Option<&'static str>,
     /// Folder whose files belong to no single run.
@@ -36,7 +36,7 @@ pub struct Walked {
 }
 
 /// The commands.
-pub const WALKED: [Walked; 7] = [
+pub const WALKED: [Walked<'static>; 6] = [
     Walked { name: "validate", words: "SCENE -o OUT", mark: Some("summary.json"), shared: None },
     Walked {
         name: "render",
@@ -58,7 +58,6 @@ pub const WALKED: [Walked; 7] = [
     },
     Walked { name: "cast", words: "MESH RAYS --any -o OUT", mark: Some("summary.json"), shared: None },
     Walked { name: "pack", words: "SCENE --no-bench -o OUT", mark: Some("manifest.json"), shared: None },
-    Walked { name: "scene", words: "show SCENE -o OUT", mark: None, shared: None },
 ];
 
 /// Somebody else's files, in the folder of the runs and beside it.
@@ -112,7 +111,7 @@ fn begin(tree: &Path) {
 }
 
 /// The arguments of a command.
-fn words(walked: &Walked, tree: &Path) -> Vec<String> {
+fn words(walked: &Walked<'_>, tree: &Path) -> Vec<String> {
     let path = |word: &str| match word {
         "SCENE" => tree.join("scene.toml").display().to_string(),
         "MESH" => tree.join("mesh.obj").display().to_string(),
@@ -158,21 +157,6 @@ struct Alone {
 }
 
 impl Alone {
-    fn of(walked: &Walked, tree: &Path, phase: usize, run: Run<'_>) -> Self {
-        let once = || {
-            begin(tree);
-            inputs(tree, phase);
-            let (code, _) = run(tree, &words(walked, tree), Fault::None);
-            assert!(code.is_some_and(|code| code < 2), "{} by itself: {code:?}", walked.name);
-            files(tree)
-        };
-        let (files, again) = (once(), once());
-        assert_eq!(files.keys().collect::<Vec<_>>(), again.keys().collect::<Vec<_>>());
-        let varying = files.iter().filter(|(name, bytes)| again.get(*name) != Some(*bytes));
-        let varying = varying.map(|(name, _)| name.clone()).collect();
-        Self { files, varying }
-    }
-
     /// The first file that is not there as it is when the command runs alone.
     fn first_other(&self, found: &Files) -> Option<&PathBuf> {
         let is_as = |(name, bytes): &(&PathBuf, &Vec<u8>)| {
@@ -184,22 +168,30 @@ impl Alone {
 
 /// Walks through operations of a command, which are chosen by their number in all. An earlier run has made more files, and a later
 /// one makes fewer.
-pub fn walk(walked: &Walked, tree: &Path, run: Run<'_>, choose: &dyn Fn(usize) -> Vec<usize>) -> Figures {
-    let alone: Vec<Alone> = (0..3).map(|phase| Alone::of(walked, tree, phase, run)).collect();
+pub fn walk(walked: &Walked<'_>, tree: &Path, run: Run<'_>, choose: &dyn Fn(usize) -> Vec<usize>) -> Figures {
     let go = |phase: usize, fault: Fault| {
         inputs(tree, phase);
         run(tree, &words(walked, tree), fault)
     };
-    let earlier = || {
+    let by_itself = |phase: usize| {
         begin(tree);
-        go(0, Fault::None)
+        let (code, operations) = go(phase, Fault::None);
+        assert!(code.is_some_and(|code| code < 2), "{} by itself: {code:?}", walked.name);
+        (files(tree), operations)
     };
-    earlier();
+    let (last, again) = (by_itself(2).0, by_itself(2).0);
+    assert_eq!(last.keys().collect::<Vec<_>>(), again.keys().collect::<Vec<_>>());
+    let varies = |name: &&PathBuf| again.get(*name) != last.get(*name);
+    let varying: BTreeSet<PathBuf> = last.keys().filter(varies).cloned().collect();
+    let (later, earlier) = (by_itself(1).0, by_itself(0).0);
+    let alone = [earlier, later, last].map(|files| Alone { files, varying: varying.clone() });
+    // Over the earlier one, which is still there.
     let operations = go(1, Fault::None).1;
     let mut figures = Figures { operations: operations.len(), ..Figures::default() };
     for number in choose(operations.len()) {
         for fault in [Fault::Fails(number), Fault::Dies(number)] {
-            earlier();
+            begin(tree);
+            go(0, Fault::None);
             let (code, _) = go(1, fault);
             figures.states += 1;
             let operation = operations[number].as_str();

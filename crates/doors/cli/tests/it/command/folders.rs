@@ -122,9 +122,9 @@ fn a_sweep_has_its_folder_with_those_who_share_it_alone() {
     let sweep =
         ["sweep", "scene.toml", "--set", "camera.pitch_down_deg=30", "--do", "render", "-o", "out/sub"];
     let other = raypencil::io::SharedFolder::begin(&folder.join("out/sub")).unwrap();
-    screen(folder, &sweep, 0);
     let line = ["validate", "scene.toml", "-o", "out/sub"];
     assert_trouble(&raypencil(folder, &line), &["sub: another run is writing into it"]);
+    screen(folder, &sweep, 0);
     // One above leaves it alone.
     screen(folder, &["validate", "scene.toml", "-o", "out"], 0);
     drop(other);
@@ -132,6 +132,36 @@ fn a_sweep_has_its_folder_with_those_who_share_it_alone() {
     assert_trouble(&raypencil(folder, &sweep), &["out: another run is writing into it"]);
     drop(above);
     screen(folder, &sweep, 0);
+}
+
+#[test]
+fn results_of_a_sweep_and_of_a_campaign_are_not_replaced_unasked() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    scene(folder, 1);
+    let into = |out| {
+        let sweep = ["sweep", "scene.toml", "--set", "camera.pitch_down_deg=30", "--do", "render", "-o", out]
+            .to_vec();
+        let campaign = ["campaign", "--terrains", "1", "-o", out].to_vec();
+        let validate = ["validate", "scene.toml", "-o", out].to_vec();
+        let pack = ["pack", "scene.toml", "--no-bench", "-o", out].to_vec();
+        [sweep, campaign, validate, pack]
+    };
+    let held = ["results of a sweep of scene.toml", "results of a campaign", "on ", "a pack of scene"];
+    for first in 0..3 {
+        let out = ["sweep", "campaign", "validate"][first];
+        screen(folder, &into(out)[first], 0);
+        for other in (0..4).filter(|other| *other != first) {
+            let is_list = first == 2 && other == 3;
+            let words =
+                [if is_list { "results of " } else { held[first] }, "expected another folder, or --force"];
+            assert_trouble(&raypencil(folder, &into(out)[other]), &words);
+        }
+        // The same again is no other.
+        screen(folder, &into(out)[first], 0);
+    }
+    let forced = [into("sweep")[2].clone(), vec!["--force"]].concat();
+    screen(folder, &forced, 0);
 }
 
 #[test]
