@@ -146,10 +146,10 @@ planted-faults *AGAIN:
 malformed-inputs:
     cargo run --release -p raypencil-tests --features examples --example malformed_inputs > docs/evidence/malformed-inputs.md
 
-# Each operation of each command that writes a folder fails once, and ends the process once: the table of
+# Each operation of each command that writes a folder (or of COMMANDS) fails once, and ends the process once: the table of
 # docs/evidence/folder-faults.md, on the screen
-folder-faults:
-    cargo run --release -p raypencil-cli --features examples --example folder_faults
+folder-faults *COMMANDS:
+    cargo run --release -p raypencil-cli --features examples --example folder_faults -- {{ COMMANDS }}
 
 # Fuzzes a reader for SECONDS, starting from the malformed inputs: scene_toml, resolved_scene, glb, dem, exr, npy, pfm, stl,
 # obj, ply, manifest, candidate; from good files: terrain, campaign, camera_info; from nothing: rays, ray_sets, numbers. Needs a nightly

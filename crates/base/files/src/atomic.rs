@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::disk::in_place_of_a_file;
 use crate::error::FileError;
-use crate::journal::{persist, temporary_beside};
+use crate::placing::{persist, temporary_beside};
 
 /// Writes a file beside `path` and renames it to `path` when it is complete, replacing what was there.
 ///

@@ -13,6 +13,9 @@ use tempfile::{NamedTempFile, TempDir};
 
 use crate::watch::{Operation, told};
 
+/// Name of the file that is locked while a run writes into its folder.
+pub(crate) const LOCK_NAME: &str = ".raypencil-lock";
+
 /// Begin and end of the names of files and folders that are half-written.
 pub(crate) const TEMPORARY: (&str, &str) = (".raypencil-", ".part");
 

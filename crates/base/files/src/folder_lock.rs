@@ -5,13 +5,10 @@ use std::fs::{File, Metadata, TryLockError};
 use std::path::Path;
 use std::time::Duration;
 
-use crate::disk;
+use crate::disk::{self, LOCK_NAME};
 use crate::folder::FolderError;
-use crate::journal::is_open;
+use crate::running::identity;
 use crate::watch::{Operation, told};
-
-/// Name of the file that is locked while a run writes.
-pub(crate) const LOCK_NAME: &str = ".raypencil-lock";
 
 /// How often a lock is asked for that somebody has, before a run is taken to have it.
 const LOOKS: u32 = 5;
@@ -61,24 +58,4 @@ pub(crate) fn unlock_shared(folder: &Path, lock: &File) {
     if is_empty && lock.try_lock().is_ok() {
         let _ = disk::remove_file(&folder.join(LOCK_NAME));
     }
-}
-
-/// Whether another process's run is writing into this very folder.
-pub(crate) fn has_run(folder: &Path) -> bool {
-    let path = folder.join(LOCK_NAME);
-    let _ = told(Operation::Look, &path);
-    // What is no file is not opened: a pipe would wait for its other end.
-    if !std::fs::symlink_metadata(&path).is_ok_and(|found| found.is_file()) || is_open(folder) {
-        return false;
-    }
-    let file = File::options().write(true).open(&path);
-    file.is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
-}
-
-/// What tells two files apart; the same for all where the system does not say.
-pub(crate) fn identity(metadata: &Metadata) -> u64 {
-    #[cfg(unix)]
-    return std::os::unix::fs::MetadataExt::ino(metadata);
-    #[cfg(not(unix))]
-    return u64::from(metadata.is_dir());
 }

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use crate::disk::Temporary;
 use crate::error::FileError;
-use crate::journal::{persist, temporary_beside};
 use crate::npy::header;
+use crate::placing::{persist, temporary_beside};
 
 /// File that is written beside its path, and renamed when it is finished. Dropped before that, it leaves nothing.
 ///

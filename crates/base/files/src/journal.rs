@@ -10,11 +10,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::disk::{self, TEMPORARY, Temporary, is_temporary};
-use crate::error::FileError;
-use crate::folder_lock::{LOCK_NAME, has_run};
+use crate::disk::{LOCK_NAME, TEMPORARY, is_temporary};
 use crate::made_list::{MADE_NAME, line};
-use crate::sha256::file_sha256_hex;
 use crate::watch::process;
 
 /// The output folders that runs of this process are writing into.
@@ -115,100 +112,30 @@ fn own(open: &mut [Open]) -> impl Iterator<Item = &mut Open> {
     open.iter_mut().filter(|open| open.process == process())
 }
 
-/// The folder of a file; a bare name has the empty path as its parent.
-fn folder_of(path: &Path) -> &Path {
-    match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    }
+/// Whether a run is open for a place, by its canonical path.
+pub(crate) fn is_noted(place: &Path) -> bool {
+    own(&mut open()).any(|open| open.name_of(place).is_some())
 }
 
-/// A new file beside the place that [`persist`] puts it in.
-pub(crate) fn temporary_beside(path: &Path) -> io::Result<Temporary> {
-    Temporary::create_in(folder_of(path))
+/// The folders of this process's runs.
+pub(crate) fn open_folders() -> Vec<PathBuf> {
+    own(&mut open()).map(|open| open.folder.clone()).collect()
 }
 
-/// Puts a complete temporary file in its place, and notes it where a run is open.
-pub(crate) fn persist(temporary: Temporary, path: &Path) -> io::Result<()> {
-    let noted = note(temporary.path(), path)?;
-    temporary.persist(path)?;
-    enter(noted);
-    Ok(())
-}
-
-/// Puts a complete file of this process in its place, on the same file system, and notes it where a run is open.
-///
-/// # Errors
-/// The error of the file system, with the path of the place; another process's run that is writing there.
-pub fn put_in_place(from: &Path, to: &Path) -> Result<(), FileError> {
-    let attempt = || {
-        let noted = note(from, to)?;
-        disk::rename(from, to)?;
-        enter(noted);
-        Ok(())
-    };
-    attempt().map_err(|error: io::Error| FileError::io(to, "write", error))
-}
-
-/// Says that a file, which is of this digest, is the open run's to remove: if that dies, the next one does.
-///
-/// # Errors
-/// That of the file system, with the path of the file.
-pub fn claim(file: &Path, sha256: &str) -> Result<(), FileError> {
-    let attempt = || match place_of(file)? {
-        Some(place) => write_ahead(&place, sha256),
-        None => Ok(()),
-    };
-    attempt().map_err(|error: io::Error| FileError::io(file, "claim", error))
-}
-
-/// The canonical path of a file, and its digest before anybody else can see it; `None` where no run is open for it.
-fn note(file: &Path, path: &Path) -> io::Result<Option<(PathBuf, String)>> {
-    let Some(place) = place_of(path)? else { return Ok(None) };
-    let (_, sha256) = file_sha256_hex(file)?;
-    write_ahead(&place, &sha256)?;
-    Ok(Some((place, sha256)))
-}
-
-/// The canonical path of a file for which a run is open.
-fn place_of(path: &Path) -> io::Result<Option<PathBuf>> {
-    if open().is_empty() {
-        return Ok(None);
-    }
-    let Some(name) = path.file_name() else { return Ok(None) };
-    let place = folder_of(path).canonicalize()?.join(name);
-    let is_open = own(&mut open()).any(|open| open.name_of(&place).is_some());
-    Ok(is_open.then_some(place))
-}
-
-/// Writes a file into the locks of the runs that are open for it, before it is put in its place.
-fn write_ahead(place: &Path, sha256: &str) -> io::Result<()> {
-    let folders: Vec<PathBuf> = own(&mut open()).map(|open| open.folder.clone()).collect();
-    for folder in folders.iter().filter(|folder| place.starts_with(folder)) {
-        // It may have begun there after this run, which looked below its folder when it began.
-        let between = place.ancestors().skip(1).take_while(|above| above != folder);
-        if let Some(other) = between.into_iter().find(|above| has_run(above)) {
-            let what = format!("another run is writing into {}", other.display());
-            return Err(io::Error::new(io::ErrorKind::ResourceBusy, what));
-        }
-    }
+/// What is to be written into which lock, before a file is put in this place.
+pub(crate) fn lines_ahead(place: &Path, sha256: &str) -> Vec<(Arc<File>, PathBuf, String)> {
     let line_for = |open: &mut Open| {
         let name = open.name_of(place)?;
         Some((open.ahead.clone()?, open.folder.join(LOCK_NAME), line(name, sha256)?))
     };
-    let lines: Vec<_> = own(&mut open()).filter_map(line_for).collect();
-    for (ahead, path, line) in lines {
-        // The line before it may have been cut off.
-        disk::write(&mut &*ahead, &path, format!("\n{line}").as_bytes())?;
-    }
-    Ok(())
+    own(&mut open()).filter_map(line_for).collect()
 }
 
-fn enter(noted: Option<(PathBuf, String)>) {
-    let Some((place, sha256)) = noted else { return };
+/// Notes a file that is in its place.
+pub(crate) fn enter(place: &Path, sha256: &str) {
     for open in own(&mut open()) {
-        if let Some(name) = open.name_of(&place).map(PathBuf::from) {
-            open.written.insert(name, sha256.clone());
+        if let Some(name) = open.name_of(place).map(PathBuf::from) {
+            open.written.insert(name, sha256.to_string());
         }
     }
 }

@@ -11,11 +11,13 @@
 //! error                          FileError: the file, the place in it, what was found and what was expected
 //! limits, bytes                  how much a file may ask for, and reading one up to a limit
 //! quoted                         words for a shell
-//! sha256, journal                digests, and what this process has written where
+//! sha256                         digests
 //! program                        digests of programs
 //! watch, disk                    operations that change a disk, each of which a test can let fail
+//! made_list, journal -> running  what runs have made in a folder, what this process has, and who writes there
+//!         -> placing             a complete file comes to its place
 //! atomic, folder                 writing a file whole, output folders
-//! made_list, folder_lock         what a run has made in a folder, and who writes there
+//! folder_lock                    one run in a folder, or several that share it
 //! output_folder                  one run at a time in a folder, and nothing of an earlier one left in it
 //! harmless                       texts of untrusted files, for terminals and Markdown
 //! growing_file                   a file or table that grows for a while and is seen only when it is complete
@@ -67,10 +69,12 @@ mod npy;
 mod npz;
 mod output_folder;
 mod pfm;
+mod placing;
 mod png;
 mod program;
 mod quoted;
 mod rays;
+mod running;
 mod sha256;
 mod shape;
 mod tiff;
@@ -92,7 +96,7 @@ pub use exr::{
 pub use folder::{FolderError, begin_output_folder, create_folder, write_texts};
 pub use growing_file::{GrowingFile, NpyRows};
 pub use harmless::{harmless, harmless_line, harmless_source, markdown_text};
-pub use journal::{Journal, claim, put_in_place};
+pub use journal::Journal;
 pub use limits::{
     Limits, MAX_EXPANSION, MAX_EXR_ATTRIBUTES, MAX_EXR_CHANNELS, MAX_EXR_HEADER_BYTES, MAX_EXR_PARTS,
     MAX_INFLATED_BYTES, limit_memory, part_of_memory,
@@ -106,6 +110,7 @@ pub use npy::{
 pub use npz::{npz_from_bytes, read_npz};
 pub use output_folder::{MIN_ABANDONED_AGE, OutputFolder, SharedFolder, remove_abandoned};
 pub use pfm::{pfm_from_bytes, read_pfm, write_pfm};
+pub use placing::{claim, put_in_place};
 pub use png::{png_from_bytes, read_picture_png};
 pub use program::{command_files, program_sha256};
 pub use quoted::quoted;

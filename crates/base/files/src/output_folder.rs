@@ -14,13 +14,14 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use crate::atomic::write_atomically;
-use crate::disk::{self, TEMPORARY, is_temporary};
+use crate::disk::{self, LOCK_NAME, TEMPORARY, is_temporary};
 use crate::folder::{FolderError, create_folder};
-use crate::folder_lock::{LOCK_NAME, has_run, identity, lock, unlock_shared};
+use crate::folder_lock::{lock, unlock_shared};
 use crate::journal::{Journal, is_open};
 use crate::made_list::{
     Entry, MADE_NAME, entries, heading, is_claimed_below, listed_subject, made_earlier, subject_of, text_of,
 };
+use crate::running::{has_run, identity};
 use crate::sha256::file_sha256_hex;
 use crate::watch::{Operation, told};
 

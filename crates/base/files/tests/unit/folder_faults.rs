@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex};
 
 use tempfile::TempDir;
 
-use crate::folder_lock::LOCK_NAME;
+use crate::disk::LOCK_NAME;
 use crate::made_list::MADE_NAME;
 use crate::{
     FileError, FolderError, GrowingFile, Operation, OutputFolder, TemporaryFolder, begin_output_folder,

@@ -198,19 +198,23 @@ fn assert_holds(tree: &Path, runs: [Run; 2], done: &[(usize, Result<(), String>)
     }
 }
 
+/// A tree in which an earlier run made the same files, and somebody else some.
+fn tree() -> TempDir {
+    let tree = TempDir::new().unwrap();
+    let earlier = Run { folder: "out", files: &["a", "sub/a", "sub/b"], is_shared: false };
+    earlier.work(tree.path(), 7).unwrap();
+    for name in ["out/mine", "out/sub/mine"] {
+        std::fs::write(tree.path().join(name), "mine").unwrap();
+    }
+    tree
+}
+
 /// Walks through all orders of at most so many changes from a run that could go on to the other. Returns how many there are.
 fn walk(runs: [Run; 2], most_changes: usize) -> usize {
     let mut orders = 0;
     let mut begins: Vec<Vec<usize>> = vec![vec![0], vec![1]];
     while let Some(begin) = begins.pop() {
-        let tree = TempDir::new().unwrap();
-        // An earlier run made the same files, and somebody else some.
-        Run { folder: "out", files: &["a", "sub/a", "sub/b"], is_shared: false }
-            .work(tree.path(), 7)
-            .unwrap();
-        for name in ["out/mine", "out/sub/mine"] {
-            std::fs::write(tree.path().join(name), "mine").unwrap();
-        }
+        let tree = tree();
         let (choices, done) = in_order(tree.path(), runs, &begin);
         orders += 1;
         let order: Vec<usize> = choices.iter().map(|(run, _)| *run).collect();
@@ -242,5 +246,17 @@ fn two_runs_in_one_tree_disturb_nobody_in_any_order() {
         let orders = walk(runs, most_changes);
         println!("{:?}: {orders} orders", runs.map(|run| (run.folder, run.is_shared)));
         assert!(orders > 30, "{orders}");
+    }
+}
+
+#[test]
+fn a_run_that_begins_just_before_one_above_sees_it() {
+    // Two changes: the run below has looked above and goes on when the other has nearly ended.
+    for (before, above) in (2..8).flat_map(|before| (18..28).map(move |above| (before, above))) {
+        let tree = tree();
+        let order = [vec![1; before], vec![0; above], vec![1; 60]].concat();
+        let (_, done) = in_order(tree.path(), [ABOVE, BELOW], &order);
+        let what = format!("{before} steps of a run below, {above} of one above");
+        assert_holds(tree.path(), [ABOVE, BELOW], &done, &what);
     }
 }

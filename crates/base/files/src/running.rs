@@ -1,0 +1,28 @@
+//! Whether a run is writing into a folder.
+
+use std::fs::{File, Metadata, TryLockError};
+use std::path::Path;
+
+use crate::disk::LOCK_NAME;
+use crate::journal::is_open;
+use crate::watch::{Operation, told};
+
+/// Whether another process's run is writing into this very folder.
+pub(crate) fn has_run(folder: &Path) -> bool {
+    let path = folder.join(LOCK_NAME);
+    let _ = told(Operation::Look, &path);
+    // What is no file is not opened: a pipe would wait for its other end.
+    if !std::fs::symlink_metadata(&path).is_ok_and(|found| found.is_file()) || is_open(folder) {
+        return false;
+    }
+    let file = File::options().write(true).open(&path);
+    file.is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
+}
+
+/// What tells two files apart; the same for all where the system does not say.
+pub(crate) fn identity(metadata: &Metadata) -> u64 {
+    #[cfg(unix)]
+    return std::os::unix::fs::MetadataExt::ino(metadata);
+    #[cfg(not(unix))]
+    return u64::from(metadata.is_dir());
+}
