@@ -81,6 +81,18 @@ impl Arrays {
         self.0.push((name.into(), Array::new(shape, numbers)));
     }
 
+    /// Adds one, if there is one.
+    pub(crate) fn add_some(
+        &mut self,
+        name: &'static str,
+        shape: &[usize],
+        numbers: Option<impl Into<Numbers>>,
+    ) {
+        if let Some(numbers) = numbers {
+            self.add(name, shape, numbers);
+        }
+    }
+
     /// A dictionary of arrays of NumPy.
     pub(crate) fn into_dict(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let dict = PyDict::new(py);

@@ -157,8 +157,8 @@ pub(crate) fn judge<'py>(
     };
     let mesh = mesh.clone();
     let (comparison, text, json) = watched(py, on_stage, move |watch| {
-        watch.stage(&format!("building a tree of {} faces", mesh.triangles.faces().len()));
-        let exact = ExactCast::new(&mesh.triangles);
+        mesh.build_tree(false, watch);
+        let exact = mesh.exact();
         let comparison = compared(&exact, &mesh, (set.rays(), sides), &stated, precision, watch);
         let command = |index: usize| {
             let (width, numbers) = ray_rows(&set.rays()[index..=index]);

@@ -50,7 +50,7 @@ mod _raypencil {
     #[pymodule_export]
     use crate::campaign::CampaignCore;
     #[pymodule_export]
-    use crate::cast::cast;
+    use crate::cast::{cast, cast_warnings, check_rays};
     #[pymodule_export]
     use crate::check::check;
     #[pymodule_export]

@@ -6,27 +6,39 @@ use std::sync::{Arc, OnceLock};
 use numpy::ndarray::ArrayView2;
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
+use raypencil::cast::open_edges;
 use raypencil::io::{hex_digits, read_triangles};
+use raypencil::referee::{CastTree, ExactCast};
 use raypencil::tracer::TracerCast;
-use raypencil::{Scene, Triangles};
+use raypencil::{Progress, Scene, Triangles};
 
 use crate::failure::Failure;
-use crate::watch::watched;
+use crate::watch::{on_threads, watched};
 
 /// Triangles, and what is made of them once.
 #[pyclass(frozen, module = "raypencil._raypencil")]
 #[derive(Debug, Clone)]
 pub(crate) struct MeshCore {
     pub(crate) triangles: Arc<Triangles>,
-    /// The tracer's tree; made when it is first needed.
+    /// The referee's tree; made when it is first needed, and kept.
+    exact: Arc<OnceLock<CastTree>>,
+    /// The tracer's.
     tracer: Arc<OnceLock<TracerCast>>,
+    /// Number of open edges; counted when it is first needed.
+    open_edges: Arc<OnceLock<u64>>,
     /// SHA-256 of the files that it was read from.
     digests: Vec<String>,
 }
 
 impl MeshCore {
     pub(crate) fn from_triangles(triangles: Triangles) -> Self {
-        Self { triangles: Arc::new(triangles), tracer: Arc::default(), digests: Vec::new() }
+        Self {
+            triangles: Arc::new(triangles),
+            exact: Arc::default(),
+            tracer: Arc::default(),
+            open_edges: Arc::default(),
+            digests: Vec::new(),
+        }
     }
 
     /// The terrain of a scene, in the scene frame.
@@ -34,9 +46,36 @@ impl MeshCore {
         Self::from_triangles(Triangles::from(scene.mesh().as_ref()))
     }
 
+    /// The referee on this mesh.
+    pub(crate) fn exact(&self) -> ExactCast<'_> {
+        self.exact.get_or_init(|| CastTree::new(&self.triangles)).cast()
+    }
+
     /// The tracer on this mesh.
     pub(crate) fn tracer(&self) -> &TracerCast {
         self.tracer.get_or_init(|| TracerCast::new(&self.triangles))
+    }
+
+    /// Whether the tree of one of them is built.
+    pub(crate) fn is_built(&self, by_tracer: bool) -> bool {
+        if by_tracer { self.tracer.get().is_some() } else { self.exact.get().is_some() }
+    }
+
+    /// Builds the tree of one of them, if it is not built.
+    pub(crate) fn build_tree(&self, by_tracer: bool, progress: &dyn Progress) {
+        if !self.is_built(by_tracer) {
+            progress.stage(&format!("building a tree of {} faces", self.triangles.faces().len()));
+            if by_tracer {
+                self.tracer();
+            } else {
+                self.exact();
+            }
+        }
+    }
+
+    /// Number of edges that are not run through once in each direction.
+    pub(crate) fn open_edges(&self) -> u64 {
+        *self.open_edges.get_or_init(|| open_edges(&self.triangles))
     }
 }
 
@@ -81,6 +120,29 @@ impl MeshCore {
     #[getter]
     fn zero_area_faces(&self) -> usize {
         self.triangles.zero_area_faces()
+    }
+
+    /// Whether the tree of the tracer, or else that of the referee, is built.
+    fn has_tree(&self, by_tracer: bool) -> bool {
+        self.is_built(by_tracer)
+    }
+
+    /// Builds one of the trees, if it is not built.
+    #[pyo3(signature = (by_tracer, threads, on_stage=None))]
+    fn build(
+        &self,
+        py: Python<'_>,
+        by_tracer: bool,
+        threads: usize,
+        on_stage: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let mesh = self.clone();
+        watched(py, on_stage, move |watch| on_threads(threads, || mesh.build_tree(by_tracer, watch)))
+    }
+
+    /// Number of edges that are not run through once in each direction: 0 if the mesh is closed.
+    fn count_open_edges(&self, py: Python<'_>) -> u64 {
+        py.detach(|| self.open_edges())
     }
 
     #[getter]

@@ -18,6 +18,20 @@ pub(crate) fn sides(fronts_only: bool) -> Sides {
 /// # Errors
 /// As [`RaySet::new`], for the first ray that is wrong.
 pub(crate) fn rays_of(array: &PyReadonlyArray2<'_, f64>, sides: Sides) -> Result<RaySet, Failure> {
+    Ok(RaySet::new(unchecked_rays(array)?, sides)?)
+}
+
+/// The same of a part of all rays, whose first one has the index `first` in messages.
+pub(crate) fn rays_from(array: &PyReadonlyArray2<'_, f64>, first: usize) -> Result<Vec<CastRay>, Failure> {
+    let rays = unchecked_rays(array)?;
+    rays.iter().enumerate().try_for_each(|(index, ray)| {
+        // The name costs time only where it is needed.
+        ray.validate("").or_else(|_| ray.validate(&format!("rays[{}]", first + index)))
+    })?;
+    Ok(rays)
+}
+
+fn unchecked_rays(array: &PyReadonlyArray2<'_, f64>) -> Result<Vec<CastRay>, Failure> {
     if array.shape()[1] != 9 {
         return Err(Failure::new(format!("rays are {:?}; expected (n, 9)", array.shape())));
     }
@@ -29,7 +43,7 @@ pub(crate) fn rays_of(array: &PyReadonlyArray2<'_, f64>, sides: Sides) -> Result
         t_max: row[7],
         t_blind: row[8],
     });
-    Ok(RaySet::new(rays.collect(), sides)?)
+    Ok(rays.collect())
 }
 
 /// A set of rays as arrays.

@@ -8,6 +8,7 @@ use std::thread::Builder;
 use std::time::Duration;
 
 use pyo3::prelude::*;
+use rayon::ThreadPoolBuilder;
 use raypencil::Progress;
 
 use crate::failure::Failure;
@@ -87,6 +88,14 @@ pub(crate) fn watched<T: Send + 'static>(
         Err(payload) => Err(Failure::new(format!("an error of raypencil itself: {}", words(&*payload)))),
     });
     result.map_err(|failure| failure.into_exception(py))
+}
+
+/// Runs `work` on so many threads; 0: on all.
+pub(crate) fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
+    match threads {
+        0 => Ok(work()),
+        _ => Ok(ThreadPoolBuilder::new().num_threads(threads).build()?.install(work)),
+    }
 }
 
 /// What a panic says.

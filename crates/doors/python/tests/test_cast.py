@@ -63,7 +63,7 @@ def test_one_ray_by_hand(cube: Mesh) -> None:
     assert float(answers.cos_incidence) == 1.0 and answers.any is not None and int(answers.any) == 1
     # The bottom at z = -1 is left at t = 2.
     assert answers.all is not None and answers.all.t.tolist() == [1.0, 2.0]
-    assert answers.all.crossing.tolist() == [1, -1] and answers.all.side.tolist() == [1, -1]
+    assert answers.all.crossing is not None and answers.all.crossing.tolist() == [1, -1] and answers.all.side.tolist() == [1, -1]
     # The diagonal x = y of the top is 0.25 / sqrt(2) away, and the sides x = 1 and y = 1 are 0.75 and 0.5.
     assert answers.margin_surface is not None and answers.margin_surface.shape == (2,)
     assert answers.margin_surface[0] <= 0.5 <= answers.margin_surface[1] * (1 + 1e-12)
@@ -152,7 +152,7 @@ def test_no_rays_are_no_answers(cube: Mesh) -> None:
         (([[0, 0, 0]], [[0, 0, 1]]), {"t_blind": [0, 1], "t_min": [0, 1, 2]}, r"shapes do not fit: .*t_blind \(2,\)"),
         (([[0, 0, 0]], [[0, 0, 1]]), {"query": "last"}, r"query is 'last'"),
         (([[0, 0, 0]], [[0, 0, 1]]), {"with_": "embree"}, r"with_ is 'embree'"),
-        (([[0, 0, 0]], [[0, 0, 1]]), {"with_": "tracer", "query": "all"}, r"query=\"first\" alone"),
+        (([[0, 0, 0]], [[0, 0, 1]]), {"with_": "tracer", "margins": True}, r"knows no margins; expected with_=\"referee\""),
         (([[0, 0, 0j]], [[0, 0, 1]]), {}, r"origins is of type complex128"),
     ],
 )

@@ -15,10 +15,11 @@ import pytest
 import raypencil
 import raypencil.peers
 
-MODULES = [raypencil, raypencil.terrain, raypencil.testing, importlib.import_module("raypencil.trimesh"), raypencil.peers]
+DROP_INS = [importlib.import_module(f"raypencil.{name}") for name in ("open3d", "trimesh")]
+MODULES = [raypencil, raypencil.terrain, raypencil.testing, *DROP_INS, raypencil.peers]
 
 #: Classes that people make; all others are made by functions.
-MADE_BY_PEOPLE = {"Mesh", "Scene", "RayMeshIntersector"}
+MADE_BY_PEOPLE = {"Mesh", "Scene", "RayMeshIntersector", "RaycastingScene"}
 
 
 def public() -> Iterator[tuple[str, Any]]:

@@ -125,3 +125,69 @@ def test_a_broken_file_is_refused_with_its_place(tmp_path: Path) -> None:
 def test_the_cube_is_where_its_file_says(cube: Mesh) -> None:
     assert cube.bounds is not None
     assert cube.bounds.tolist() == [[-1, -1, -1], [1, 1, 1]] and cube.zero_area_faces == 0
+
+
+def test_what_other_packages_have_is_a_mesh(cube: Mesh) -> None:
+    class Of:
+        """Something with these attributes."""
+
+        def __init__(self, **attributes: Any) -> None:
+            self.__dict__.update(attributes)
+
+    class Tensor:
+        """As one of Open3D."""
+
+        def __init__(self, values: Any) -> None:
+            self.values = values
+
+        def cpu(self) -> Tensor:
+            return self
+
+        def numpy(self) -> Any:
+            return np.asarray(self.values)
+
+    expected = raypencil.cast(cube, [0.25, 0.5, 3], [0, 0, -2]).t
+    vertices, faces = cube.vertices, cube.faces
+    same: list[Any] = [
+        (vertices, faces),
+        [vertices.tolist(), faces.tolist()],
+        Of(vertices=vertices, faces=faces, triangles=vertices[faces]),
+        Of(vertices=vertices, triangles=faces.astype(np.int32)),
+        Of(vertex={"positions": Tensor(vertices)}, triangle={"indices": Tensor(faces.astype(np.int64))}),
+    ]
+    for mesh in same:
+        assert raypencil.cast(mesh, [0.25, 0.5, 3], [0, 0, -2]).t == expected == 1.0
+    with pytest.raises(RaypencilError, match=r"mesh is of type tuple; expected a Mesh, \(vertices, faces\)"):
+        raypencil.cast((vertices, faces, faces), [0, 0, 0], [0, 0, 1])
+
+
+def test_tensors_are_taken_by_dlpack_without_a_copy() -> None:
+    class Tensor:
+        """Gives its memory by DLPack alone, as a tensor of another package."""
+
+        def __init__(self, array: Any, error: Exception | None = None) -> None:
+            self.array, self.error = array, error
+
+        def __dlpack__(self, **options: Any) -> Any:
+            if self.error:
+                raise self.error
+            return self.array.__dlpack__(**options)
+
+        def __dlpack_device__(self) -> Any:
+            return self.array.__dlpack_device__()
+
+    from raypencil import _arrays
+
+    numbers = np.arange(12.0).reshape(4, 3)
+    assert np.shares_memory(_arrays.reals("x", Tensor(numbers)), numbers)
+    mesh = Mesh(Tensor(np.array(VERTICES)), Tensor(np.array([[0, 1, 2]])))  # type: ignore[arg-type]
+    origins = np.array([[1, 1, 3], [9, 9, 3]], dtype=np.float32)
+    answers = raypencil.cast(mesh, Tensor(origins), Tensor(np.array([0.0, 0.0, -2.0])))  # type: ignore[arg-type]
+    assert answers.t.tolist() == [1.5, np.inf]
+    wrong = Tensor(numbers, BufferError("it needs a gradient"))
+    with pytest.raises(RaypencilError, match=r"origins is a .*Tensor that is no array here \(it needs a gradient\); .*detach"):
+        raypencil.cast(mesh, wrong, [0, 0, 1])  # type: ignore[arg-type]
+
+
+def test_open_edges_are_counted(cube: Mesh) -> None:
+    assert cube.open_edges == 0 and Mesh(VERTICES, [[0, 1, 2]]).open_edges == 3

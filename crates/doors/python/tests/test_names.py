@@ -41,6 +41,7 @@ NO_FUNCTION = {
 
 #: Functions without a command, and why.
 NO_COMMAND = {
+    "cast_chunks": "`cast` in pieces; the command writes all of its files at the end",
     "judge": "arrays against arrays; the files of a program are judged by `check`",
     "load": "commands read their files themselves",
     "load_mesh": "commands read their files themselves",
@@ -97,10 +98,13 @@ ONLY_PYTHON = {
     "campaign shards": "the number of parts, of which `--shard` makes one",
     "cast directions": "the second half of RAYS",
     "cast origins": "the first half of RAYS",
+    "cast out": "the command writes files",
     "cast query": "`--any` and `--all`, which are functions of Python",
     "cast t_blind": "a column of RAYS",
     "cast t_max": "a column of RAYS",
     "cast t_min": "a column of RAYS",
+    "cast threads": "the command takes all, or as many as RAYON_NUM_THREADS says",
+    "cast values": "the command writes a file of each",
     "check answers": "CANDIDATE, or arrays",
     "check name": "arrays have no folder after which they could be called",
     "drive images": "the command keeps none in memory",

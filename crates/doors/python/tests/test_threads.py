@@ -115,7 +115,9 @@ def test_a_callback_that_raises_ends_the_call(cube: raypencil.Mesh) -> None:
         raise Enough(stage)
 
     with pytest.raises(Enough, match="tree of 12 faces"):
-        raypencil.cast(cube, [0, 0, 3], [0, 0, -1], progress=enough)
+        raypencil.cast(raypencil.Mesh(cube.vertices, cube.faces), [0, 0, 3], [0, 0, -1], progress=enough)
+    with pytest.raises(Enough, match="casting 1 rays"):
+        raypencil.cast(cube.build(), [0, 0, 3], [0, 0, -1], progress=enough)
 
 
 def test_stages_are_told(small: raypencil.Scene) -> None:
@@ -126,7 +128,7 @@ def test_stages_are_told(small: raypencil.Scene) -> None:
 
 def test_progress_by_tqdm_is_written_where_errors_are(cube: raypencil.Mesh, capfd: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("tqdm")
-    raypencil.cast(cube, [0, 0, 3], [0, 0, -1], progress=True)
+    raypencil.cast(raypencil.Mesh(cube.vertices, cube.faces), [0, 0, 3], [0, 0, -1], progress=True)
     out, error = capfd.readouterr()
     assert out == "" and "tree of 12 faces" in error
     raypencil.cast(cube, [0, 0, 3], [0, 0, -1])

@@ -1,7 +1,7 @@
 //! On which side of a face's edges a ray passes, in plain f64: most faces that a box proposes are refused here.
 //!
 //! The side of the edge from a to b is the sign of F = D.((a - o) x e), e = b - a: `face` evaluates it in intervals, s times
-//! as large. Here o and D are the middles of their enclosures, off by at most r_o and r_D in each component. With u =
+//! as large, and `cast` as it is. Here o and D are the middles of their enclosures, off by at most r_o and r_D in each component. With u =
 //! 2^-53, |.| the largest component, A = |a - o| as computed and E = |e|:
 //!
 //! ```text
@@ -14,6 +14,8 @@
 //!
 //! The bound takes 8 for 6 and 16 u for 8 u: that covers products of two errors and the roundings of the bound itself, and
 //! a number far below any of these that underflow leaves.
+
+use std::cmp::Ordering;
 
 use glam::DVec3;
 
@@ -68,6 +70,24 @@ impl EdgeFilter {
             direction,
             size: direction.abs().max_element(),
             errors: [2.0 * of_origin, 2.0 * of_direction],
+        }
+    }
+
+    /// The filter of a ray whose origin and direction are these numbers.
+    pub(crate) fn exactly(origin: DVec3, direction: DVec3) -> Self {
+        Self { origin, direction, size: direction.abs().max_element(), errors: [0.0; 2] }
+    }
+
+    /// On which side of the edge from corner `k` the line passes; `None` if it is too near to tell.
+    #[inline]
+    pub(crate) fn sign(&self, corners: [DVec3; 3], k: usize) -> Option<Ordering> {
+        let [side, bound] = self.side(corners, k);
+        if side > bound {
+            Some(Ordering::Greater)
+        } else if side < -bound {
+            Some(Ordering::Less)
+        } else {
+            None
         }
     }
 

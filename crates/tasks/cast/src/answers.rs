@@ -146,26 +146,71 @@ pub fn cast_with(
 ) -> Answers {
     progress.stage(&format!("casting {} rays", rays.len()));
     let first = rays.par_iter().map(|ray| first(exact, ray, sides)).collect();
-    let any = questions.any.then(|| rays.par_iter().map(|ray| exact.any(ray, sides)).collect());
+    Answers { first, ..cast_beside_first(exact, rays, sides, questions, progress) }
+}
+
+/// What is asked beside first hits, which stay empty, with a tree that is there already. A few rays are answered on this thread.
+pub fn cast_beside_first(
+    exact: &ExactCast<'_>,
+    rays: &[CastRay],
+    sides: Sides,
+    questions: Questions,
+    progress: &dyn Progress,
+) -> Answers {
+    let any = questions.any.then(|| each(rays, |ray| exact.any(ray, sides)));
     let all = questions.all.then(|| {
         progress.stage(&format!("all hits of {} rays", rays.len()));
-        rays.par_iter().map(|ray| all(exact, ray, sides)).collect()
+        each(rays, |ray| all(exact, ray, sides))
     });
     let margins = questions.margins.then(|| {
         progress.stage(&format!("margins of {} rays", rays.len()));
-        rays.par_iter().map(|ray| exact.margins(ray, sides)).collect()
+        each(rays, |ray| exact.margins(ray, sides))
     });
-    Answers { first, any, all, margins }
+    Answers { first: Vec::new(), any, all, margins }
+}
+
+/// The same by the tracer, which knows no margins. Hits at the same `f64` t are one group; a group's `crossing` is unknown, and 0.
+///
+/// # Panics
+/// If margins are asked for.
+pub fn traced_beside_first(
+    tracer: &TracerCast,
+    rays: &[CastRay],
+    sides: Sides,
+    questions: Questions,
+) -> Answers {
+    assert!(!questions.margins, "the tracer has no margins");
+    let any = questions.any.then(|| each(rays, |ray| tracer.traverser().any(ray, sides)));
+    let groups = |ray: &CastRay| {
+        let hits = tracer.traverser().all(ray, sides);
+        let group = |hits: &[TracedHit]| GroupAtT {
+            t: hits[0].t,
+            faces: hits.iter().map(|hit| SidedFace { face: hit.face, side: hit.side }).collect(),
+            crossing: 0,
+        };
+        hits.chunk_by(|a, b| a.t == b.t).map(group).collect()
+    };
+    let all = questions.all.then(|| each(rays, groups));
+    Answers { first: Vec::new(), any, all, margins: None }
+}
+
+/// Rays for which it is not worth while to wake other threads.
+const FEW_RAYS: usize = 16;
+
+fn each<T: Send>(rays: &[CastRay], answer: impl Fn(&CastRay) -> T + Sync + Send) -> Vec<T> {
+    match rays.len() {
+        0..=FEW_RAYS => rays.iter().map(answer).collect(),
+        _ => rays.par_iter().map(answer).collect(),
+    }
 }
 
 fn first(exact: &ExactCast<'_>, ray: &CastRay, sides: Sides) -> Reading<FirstHit> {
-    exact.reading(ray, sides).map(|faces| {
-        let CastHit { face, side, t, range, point, normal, barycentric, cos_incidence } =
-            exact.values(ray, faces[0]).expect("a nearest face is met");
+    exact.first_meeting(ray, sides).map(|(meeting, ties)| {
+        let CastHit { face, side, t, range, point, normal, barycentric, cos_incidence } = meeting.hit();
         FirstHit {
             face,
             side,
-            ties: faces.len() as u32,
+            ties,
             t: t.double,
             range: range.double,
             point: DVec3::from_array(point.map(|part| part.double)),
@@ -180,7 +225,7 @@ fn all(exact: &ExactCast<'_>, ray: &CastRay, sides: Sides) -> Vec<GroupAtT> {
     let groups = exact.all(ray, sides).into_iter();
     groups
         .filter_map(|group| {
-            let t = exact.values(ray, group.faces.first()?.face)?.t.double;
+            let t = exact.meeting(ray, group.faces.first()?.face)?.t().double;
             Some(GroupAtT { t, faces: group.faces, crossing: group.crossing })
         })
         .collect()

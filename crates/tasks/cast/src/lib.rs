@@ -4,6 +4,7 @@
 //!
 //! ```text
 //! answers        what is asked, and the answers of the referee
+//! columns        the values of first hits that are asked for, an array each
 //! cloud          the points that are hit, as PLY and PCD
 //! comparison/    another program's first hits against the exact ones
 //! page           the answers as a page that answers when asked
@@ -36,6 +37,7 @@
 
 mod answers;
 mod cloud;
+mod columns;
 mod comparison;
 mod pack;
 mod page;
@@ -44,8 +46,11 @@ mod text;
 mod warnings;
 mod write;
 
-pub use answers::{Answers, FirstHit, GroupAtT, Questions, cast, cast_with};
+pub use answers::{
+    Answers, FirstHit, GroupAtT, Questions, cast, cast_beside_first, cast_with, traced_beside_first,
+};
 pub use cloud::{CloudFrame, write_pcd, write_ply};
+pub use columns::{Caster, ColumnsPart, FirstColumns, ReadingCounts, Values};
 pub use comparison::{
     CastCounts, CastValue, Comparison, RayVerdict, Stated, ValueTally, Wrong, compare, compare_with,
     comparison_headline, comparison_json, comparison_text, write_comparison,
@@ -58,7 +63,7 @@ pub use page::{CastPage, ComparedHits, write_cast_page};
 pub use range_picture::{range_picture, top_picture};
 pub use raypencil_files::{RayArray, rays_from_bytes, read_rays};
 pub use text::{counts_text, ray_json, ray_text};
-pub use warnings::cast_warnings;
+pub use warnings::{CastSeen, cast_warnings, cast_warnings_of, open_edges};
 pub use write::{CastSource, write_answers, write_set};
 
 #[cfg(doctest)]

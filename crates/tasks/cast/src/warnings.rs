@@ -11,6 +11,7 @@ use raypencil_scene::{CastRay, NamedRaySet, Side, Sides, Triangles};
 use raypencil_survey::{TerrainShape, Warning, WarningCode, lies_on_its_side, terrain_too_large};
 
 use crate::answers::Answers;
+use crate::columns::ReadingCounts;
 
 /// Largest share of backs among the first hits, tuned: one half, as for a sensor.
 const MAX_BACK_SHARE: f64 = 0.5;
@@ -42,14 +43,38 @@ pub fn cast_warnings(
     set: Option<&NamedRaySet>,
     answers: &Answers,
 ) -> Vec<Warning> {
+    let hits = answers.counts().0 as u64;
+    let backs = answers.hits().filter(|hit| hit.side == Side::Back).count() as u64;
+    let counts = ReadingCounts { hits, too_near: answers.too_near() as u64, backs };
+    let seen = CastSeen { counts, open_edges: answers.all.as_ref().map(|_| open_edges(mesh)) };
+    cast_warnings_of(mesh, || ExactCast::new(mesh), rays, sides, set, seen)
+}
+
+/// What warnings are about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CastSeen {
+    /// How many rays read what.
+    pub counts: ReadingCounts,
+    /// The mesh's [`open_edges`], if all hits are asked for.
+    pub open_edges: Option<u64>,
+}
+
+/// [`cast_warnings`] about rays whose answers are no longer there. Where anything is hit, they need not be there either.
+pub fn cast_warnings_of<'t>(
+    mesh: &'t Triangles,
+    exact: impl FnOnce() -> ExactCast<'t>,
+    rays: &[CastRay],
+    sides: Sides,
+    set: Option<&NamedRaySet>,
+    seen: CastSeen,
+) -> Vec<Warning> {
     let of = set.map_or(String::new(), |set| format!("{}: ", set.name));
     let warning = |code, sentence: String| Warning::of_scene(code, format!("{of}{sentence}"));
     let mut found = Vec::new();
-    let (hits, _) = answers.counts();
-    if hits + answers.too_near() == 0 && !rays.is_empty() {
-        found.push(warning(WarningCode::NoHits, nothing_hit(mesh, rays, sides)));
+    let ReadingCounts { hits, too_near, backs } = seen.counts;
+    if hits + too_near == 0 && !rays.is_empty() {
+        found.push(warning(WarningCode::NoHits, nothing_hit(mesh, &exact(), rays, sides)));
     }
-    let backs = answers.hits().filter(|hit| hit.side == Side::Back).count();
     if backs as f64 > MAX_BACK_SHARE * hits as f64 {
         let percent = number(100.0 * backs as f64 / hits as f64);
         let sentence = format!(
@@ -70,15 +95,12 @@ pub fn cast_warnings(
                 .map(|Warning { code, sentence, .. }| warning(code, format!("{sentence} (--scale 0.001)"))),
         );
     }
-    if answers.all.is_some() {
-        let open = open_edges(mesh);
-        if open > 0 {
-            let edges = counted(open, "open edge", "open edges");
-            let sentence = format!(
-                "the mesh has {edges}: sums of crossings tell its inside from its outside only where it is closed."
-            );
-            found.push(warning(WarningCode::OpenMesh, sentence));
-        }
+    if let Some(open) = seen.open_edges.filter(|&open| open > 0) {
+        let edges = counted(open, "open edge", "open edges");
+        let sentence = format!(
+            "the mesh has {edges}: sums of crossings tell its inside from its outside only where it is closed."
+        );
+        found.push(warning(WarningCode::OpenMesh, sentence));
     }
     found
 }
@@ -89,12 +111,11 @@ fn reach(ray: &CastRay) -> f64 {
 }
 
 /// Why no ray hits, as far as asking some of them again can tell. The answers are exact.
-fn nothing_hit(mesh: &Triangles, rays: &[CastRay], sides: Sides) -> String {
+fn nothing_hit(mesh: &Triangles, exact: &ExactCast<'_>, rays: &[CastRay], sides: Sides) -> String {
     let none = match rays.len() {
         1 => "the ray does not hit the mesh".to_string(),
         rays => format!("none of the {} rays hits the mesh", count(rays as u64)),
     };
-    let exact = ExactCast::new(mesh);
     let step = rays.len().div_ceil(MAX_TRIED_RAYS);
     let tried: Vec<&CastRay> = rays.iter().step_by(step).collect();
     let nearest = |limited: bool, sides: Sides| {
@@ -125,7 +146,7 @@ fn nothing_hit(mesh: &Triangles, rays: &[CastRay], sides: Sides) -> String {
         let (range, from, to) =
             (number(range), number(ray.t_min * ray.direction.length()), number(reach(ray)));
         // What lies before the least t is no matter of a unit that is too small.
-        return match hit_is_beyond(ray, &exact, sides) {
+        return match hit_is_beyond(ray, exact, sides) {
             true => format!(
                 "{words} {range} where the limit is {to}: is the mesh in another unit, such as millimetres (--scale 0.001)?"
             ),
@@ -162,7 +183,7 @@ fn hit_is_beyond(ray: &CastRay, exact: &ExactCast<'_>, sides: Sides) -> bool {
 }
 
 /// Number of edges that are not run through once in each direction, after vertices at the same place are taken as one.
-fn open_edges(mesh: &Triangles) -> u64 {
+pub fn open_edges(mesh: &Triangles) -> u64 {
     let mut known = HashMap::new();
     let places: Vec<u32> = mesh
         .vertices()

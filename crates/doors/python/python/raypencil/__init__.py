@@ -6,7 +6,8 @@
 
 from . import terrain, testing
 from ._campaign import CampaignResult, campaign
-from ._cast import AllHits, CastResult, cast
+from ._cast import cast, cast_chunks
+from ._cast_result import AllHits, CastResult
 from ._drive import Drive, ElevationMap, Frame, Sectors, Vectors, drive
 from ._errors import RaypencilError, RaypencilFileError, RaypencilFileNotFoundError, RaypencilWarning
 from ._judge import Judgement, judge
@@ -47,6 +48,7 @@ __all__ = [
     "__version__",
     "campaign",
     "cast",
+    "cast_chunks",
     "check",
     "diff",
     "drive",

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -13,69 +14,152 @@ from ._errors import RaypencilError
 #: What stands for no face in an array of faces.
 NO_FACE = 4294967295
 
+#: The type of most arrays, which need no look.
+_F64 = np.dtype(np.float64)
+
 Shape = tuple[int, ...]
 
 #: Rays as (n, 9), and their own shape.
 Rays = tuple[NDArray[np.float64], Shape]
 
 
-def reals(name: str, values: ArrayLike) -> NDArray[np.float64]:
+def array(name: str, values: Any) -> NDArray[Any]:
+    """Values as an array; tensors of other packages by DLPack, without a copy."""
+    if isinstance(values, np.ndarray):
+        return values
+    if hasattr(values, "__dlpack__") and not isinstance(values, np.generic):
+        try:
+            return np.from_dlpack(values)
+        except (BufferError, RuntimeError, TypeError, ValueError) as error:
+            kind = f"{type(values).__module__}.{type(values).__name__}"
+            expected = "one in the memory of the processor without a gradient, such as tensor.detach().cpu()"
+            raise RaypencilError(f"{name} is a {kind} that is no array here ({error}); expected {expected}") from None
+    return np.asarray(values)
+
+
+def reals(name: str, values: Any) -> NDArray[np.float64]:
     """Numbers of any real type as float64, without a copy where they are so already."""
-    array = np.asarray(values)
-    if array.dtype.kind not in "fiub" and array.size:
-        raise RaypencilError(f"{name} is of type {array.dtype}; expected real numbers")
-    return np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
+    if type(values) is np.ndarray and values.dtype is _F64 and values.flags.c_contiguous:
+        return values
+    numbers = array(name, values)
+    if numbers.dtype.kind not in "fiub" and numbers.size:
+        raise RaypencilError(f"{name} is of type {numbers.dtype}; expected real numbers")
+    return np.ascontiguousarray(numbers, dtype=np.float64).reshape(numbers.shape)
 
 
-def vectors(name: str, values: ArrayLike) -> NDArray[np.float64]:
+def vectors(name: str, values: Any) -> NDArray[np.float64]:
     """Vectors of three numbers: (..., 3)."""
-    array = reals(name, values)
-    if array.ndim == 0 or array.shape[-1] != 3:
-        raise RaypencilError(f"{name} has the shape {array.shape}; expected (..., 3)")
-    return array
+    numbers = reals(name, values)
+    if numbers.ndim == 0 or numbers.shape[-1] != 3:
+        raise RaypencilError(f"{name} has the shape {numbers.shape}; expected (..., 3)")
+    return numbers
+
+
+class RayParts:
+    """Rays as they were given: parts that are broadcast against each other, and put together where they are needed."""
+
+    __slots__ = ("parts", "shape")
+
+    def __init__(
+        self,
+        origins: Any,
+        directions: Any | None,
+        t_min: Any | None = None,
+        t_max: Any | None = None,
+        t_blind: Any | None = None,
+    ) -> None:
+        if directions is None:
+            together = reals("rays", origins)
+            if together.ndim == 0 or together.shape[-1] not in (6, 8, 9):
+                raise RaypencilError(f"rays have the shape {together.shape}; expected (..., 6), (..., 8) or (..., 9)")
+            origin, direction = together[..., 0:3], together[..., 3:6]
+            if together.shape[-1] >= 8:
+                if t_min is not None or t_max is not None:
+                    raise RaypencilError(f"t_min and t_max are given twice: rays of {together.shape[-1]} numbers have them")
+                t_min, t_max = together[..., 6], together[..., 7]
+            if together.shape[-1] == 9:
+                if t_blind is not None:
+                    raise RaypencilError("t_blind is given twice: rays of 9 numbers have it")
+                t_blind = together[..., 8]
+        else:
+            origin, direction = vectors("origins", origins), vectors("directions", directions)
+        #: Origins and directions (..., 3), then t_min, t_max and t_blind: an array or a number.
+        self.parts: tuple[Any, ...] = (
+            origin,
+            direction,
+            0.0 if t_min is None else reals("t_min", t_min),
+            np.inf if t_max is None else reals("t_max", t_max),
+            0.0 if t_blind is None else reals("t_blind", t_blind),
+        )
+        #: The shape of the rays.
+        self.shape: Shape = origin.shape[:-1]
+        if direction.shape != origin.shape or t_min is not None or t_max is not None or t_blind is not None:
+            self.shape = self._broadcast()
+
+    def _broadcast(self) -> Shape:
+        names = ("origins", "directions", "t_min", "t_max", "t_blind")
+        shapes = {name: np.shape(of) for name, of in zip(names, self.parts, strict=True)}
+        shapes["origins"], shapes["directions"] = shapes["origins"][:-1], shapes["directions"][:-1]
+        if isinstance(self.parts[4], float):
+            del shapes["t_blind"]
+        try:
+            shape = np.broadcast_shapes(*shapes.values())
+        except ValueError:
+            given = ", ".join(f"{name} {of}" for name, of in shapes.items())
+            raise RaypencilError(f"shapes do not fit: {given}; expected shapes that can be broadcast") from None
+        return tuple(int(side) for side in shape)
+
+    def whole(self) -> NDArray[np.float64]:
+        """All rays, (n, 9)."""
+        made = np.empty((*self.shape, 9))
+        made[..., 0:3], made[..., 3:6], made[..., 6], made[..., 7], made[..., 8] = self.parts
+        return made.reshape(-1, 9)
+
+    def block(self, index: tuple[Any, ...]) -> NDArray[np.float64]:
+        """The rays at an index of slices and whole numbers, (k, 9)."""
+        origin, direction, *ends = self.parts
+        cut: list[Any] = [np.broadcast_to(of, (*self.shape, 3))[index] for of in (origin, direction)]
+        cut += [np.broadcast_to(of, self.shape)[index] if isinstance(of, np.ndarray) else of for of in ends]
+        made = np.empty((*cut[0].shape[:-1], 9))
+        made[..., 0:3], made[..., 3:6], made[..., 6], made[..., 7], made[..., 8] = cut
+        return made.reshape(-1, 9)
+
+    def overlaps(self, other: NDArray[Any]) -> bool:
+        """Whether an array lies in memory where the rays do."""
+        return any(np.may_share_memory(of, other) for of in self.parts if isinstance(of, np.ndarray))
+
+
+def blocks(shape: Shape, size: int) -> Iterator[tuple[tuple[Any, ...], int, int]]:
+    """Parts of an array of this shape with at most ``size`` cells each: an index, and where its cells begin and end in C order."""
+    if not shape:
+        yield (), 0, 1
+        return
+    row = math.prod(shape[1:])
+    if row <= size:
+        rows = max(1, size // max(1, row))
+        for start in range(0, shape[0], rows):
+            stop = min(start + rows, shape[0])
+            yield (slice(start, stop),), start * row, stop * row
+        return
+    for at in range(shape[0]):
+        for index, start, stop in blocks(shape[1:], size):
+            yield (at, *index), at * row + start, at * row + stop
 
 
 def rays(
-    origins: ArrayLike,
-    directions: ArrayLike | None,
-    t_min: ArrayLike | None = None,
-    t_max: ArrayLike | None = None,
-    t_blind: ArrayLike | None = None,
+    origins: Any,
+    directions: Any | None,
+    t_min: Any | None = None,
+    t_max: Any | None = None,
+    t_blind: Any | None = None,
 ) -> Rays:
     """Rays as (n, 9) with their own shape.
 
     Origins and directions are (..., 3) each, or, without directions, (..., 6), (..., 8) or (..., 9) together. Everything is
     broadcast against everything else.
     """
-    if directions is None:
-        together = reals("rays", origins)
-        if together.ndim == 0 or together.shape[-1] not in (6, 8, 9):
-            raise RaypencilError(f"rays have the shape {together.shape}; expected (..., 6), (..., 8) or (..., 9)")
-        origin, direction = together[..., 0:3], together[..., 3:6]
-        if together.shape[-1] >= 8:
-            if t_min is not None or t_max is not None:
-                raise RaypencilError(f"t_min and t_max are given twice: rays of {together.shape[-1]} numbers have them")
-            t_min, t_max = together[..., 6], together[..., 7]
-        if together.shape[-1] == 9:
-            if t_blind is not None:
-                raise RaypencilError("t_blind is given twice: rays of 9 numbers have it")
-            t_blind = together[..., 8]
-    else:
-        origin, direction = vectors("origins", origins), vectors("directions", directions)
-    low = reals("t_min", 0.0 if t_min is None else t_min)
-    high = reals("t_max", np.inf if t_max is None else t_max)
-    blind = reals("t_blind", 0.0 if t_blind is None else t_blind)
-    parts = {"origins": origin.shape[:-1], "directions": direction.shape[:-1], "t_min": low.shape, "t_max": high.shape}
-    if t_blind is not None:
-        parts["t_blind"] = blind.shape
-    try:
-        shape = np.broadcast_shapes(*parts.values())
-    except ValueError:
-        given = ", ".join(f"{name} {of}" for name, of in parts.items())
-        raise RaypencilError(f"shapes do not fit: {given}; expected shapes that can be broadcast") from None
-    made = np.empty((*shape, 9))
-    made[..., 0:3], made[..., 3:6], made[..., 6], made[..., 7], made[..., 8] = origin, direction, low, high, blind
-    return made.reshape(-1, 9), tuple(int(side) for side in shape)
+    parts = RayParts(origins, directions, t_min, t_max, t_blind)
+    return parts.whole(), parts.shape
 
 
 def given_rays(values: Any) -> Rays:
@@ -92,19 +176,19 @@ def dimensions(shape: Shape) -> tuple[str, ...]:
     return {1: ("ray",), 2: ("row", "column")}.get(len(shape)) or tuple(f"axis_{axis}" for axis in range(len(shape)))
 
 
-def faces(name: str, values: ArrayLike) -> NDArray[np.uint32]:
+def faces(name: str, values: Any) -> NDArray[np.uint32]:
     """Vertex indices: (m, 3), whole numbers of any integer type."""
-    array = np.asarray(values)
-    if array.size == 0:
+    indices = array(name, values)
+    if indices.size == 0:
         return np.zeros((0, 3), dtype=np.uint32)
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise RaypencilError(f"{name} has the shape {array.shape}; expected (m, 3)")
-    if array.dtype.kind not in "iu":
-        raise RaypencilError(f"{name} is of type {array.dtype}; expected integers")
-    if array.dtype.kind == "i" and (array < 0).any() or int(array.max()) > NO_FACE:
-        row = int(np.argmax(((array < 0) | (array > NO_FACE)).any(axis=1)))
-        raise RaypencilError(f"{name}[{row}] is {array[row].tolist()}; expected three vertex indices")
-    return np.ascontiguousarray(array, dtype=np.uint32)
+    if indices.ndim != 2 or indices.shape[1] != 3:
+        raise RaypencilError(f"{name} has the shape {indices.shape}; expected (m, 3)")
+    if indices.dtype.kind not in "iu":
+        raise RaypencilError(f"{name} is of type {indices.dtype}; expected integers")
+    if indices.dtype.kind == "i" and (indices < 0).any() or int(indices.max()) > NO_FACE:
+        row = int(np.argmax(((indices < 0) | (indices > NO_FACE)).any(axis=1)))
+        raise RaypencilError(f"{name}[{row}] is {indices[row].tolist()}; expected three vertex indices")
+    return np.ascontiguousarray(indices, dtype=np.uint32)
 
 
 def hit_faces(name: str, values: ArrayLike, miss: float | None) -> NDArray[np.int64]:

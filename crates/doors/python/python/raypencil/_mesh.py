@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,6 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 from . import _arrays, _raypencil
 from ._errors import RaypencilError
 from ._progress import Progress, stages
+
+Caster = Literal["referee", "tracer"]
+
+#: More would be a mistake.
+MAX_THREADS = 1024
 
 #: The built-in grounds.
 BUILTIN_NAMES = ("pyramids", "facets")
@@ -26,7 +31,8 @@ class Mesh:
     Raises:
         RaypencilError: a vertex that is not finite, an index that is out of bounds, another shape or type.
 
-    A mesh can be pickled, and works in any number of threads.
+    A mesh keeps the tree that its first rays had to build (:attr:`trees`): later calls only ask. It can be pickled, without its
+    trees, and works in any number of threads.
     """
 
     __slots__ = ("_core",)
@@ -68,6 +74,33 @@ class Mesh:
             return None
         return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)])
 
+    @property
+    def trees(self) -> tuple[Caster, ...]:
+        """Whose trees are built and kept: none, or some of ``"referee"`` and ``"tracer"``."""
+        both: tuple[Caster, ...] = ("referee", "tracer")
+        return tuple(of for of in both if self._core.has_tree(of == "tracer"))
+
+    def build(self, with_: Caster = "referee", *, threads: int | None = None, progress: Progress = False) -> Mesh:
+        """Builds a tree now, if it is not built, and gives the mesh: ``mesh = load("yard.glb").build()``.
+
+        Args:
+            with_: whose tree.
+            threads: how many threads build it; ``None``: all. The tree is the same.
+            progress: see :func:`cast`.
+
+        Raises:
+            RaypencilError: a ``with_`` or a number of threads that is none.
+        """
+        by_tracer = is_tracer(with_)
+        with stages(progress) as on_stage:
+            self._core.build(by_tracer, number_of_threads(threads), on_stage)
+        return self
+
+    @property
+    def open_edges(self) -> int:
+        """Number of edges that are not run through once in each direction, vertices at one place taken as one: 0 if it is closed."""
+        return self._core.count_open_edges()
+
     def save(self, folder: str | os.PathLike[str]) -> None:
         """Writes ``vertices.npy`` and ``faces.npy`` into a folder, which every command takes for a mesh.
 
@@ -79,22 +112,49 @@ class Mesh:
         np.save(os.path.join(folder, "faces.npy"), self.faces)
 
     def __repr__(self) -> str:
-        return f"<raypencil.Mesh: {len(self.vertices)} vertices, {len(self.faces)} faces>"
+        built = f", tree of {' and '.join(self.trees)}" if self.trees else ""
+        return f"<raypencil.Mesh: {len(self.vertices)} vertices, {len(self.faces)} faces{built}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Mesh, (np.array(self.vertices), np.array(self.faces))
 
 
+def is_tracer(with_: str) -> bool:
+    """Whether the tracer is asked, and not the referee."""
+    if with_ not in ("referee", "tracer"):
+        raise RaypencilError(f'with_ is {with_!r}; expected "referee" or "tracer"')
+    return with_ == "tracer"
+
+
+def number_of_threads(threads: int | None) -> int:
+    """As the engine takes it: 0 is all."""
+    if threads is None:
+        return 0
+    if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or not 1 <= threads <= MAX_THREADS:
+        raise RaypencilError(f"threads is {threads!r}; expected 1 to {MAX_THREADS}, or None for all")
+    return int(threads)
+
+
 def as_mesh(mesh: Any) -> Mesh:
-    """A mesh; a scene's terrain; or anything with ``vertices`` and ``faces``, such as a mesh of trimesh."""
+    """A mesh; a scene's terrain; vertices and faces; a mesh of Open3D; or anything with ``vertices`` and ``faces``, such as one of
+    trimesh."""
     if isinstance(mesh, Mesh):
         return mesh
     own = getattr(mesh, "mesh", None)
     if isinstance(own, Mesh):
         return own
+    if isinstance(mesh, (tuple, list)) and len(mesh) == 2:
+        return Mesh(mesh[0], mesh[1])
     if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
         return Mesh(mesh.vertices, mesh.faces)
-    raise RaypencilError(f"mesh is of type {type(mesh).__name__}; expected a Mesh, or what has vertices and faces")
+    # Open3D's open3d.geometry.TriangleMesh, and then its open3d.t.geometry.TriangleMesh.
+    if hasattr(mesh, "vertices") and hasattr(mesh, "triangles"):
+        return Mesh(np.asarray(mesh.vertices), np.asarray(mesh.triangles))
+    if hasattr(mesh, "vertex") and hasattr(mesh, "triangle"):
+        return Mesh(*(tensor.cpu().numpy() for tensor in (mesh.vertex["positions"], mesh.triangle["indices"])))
+    raise RaypencilError(
+        f"mesh is of type {type(mesh).__name__}; expected a Mesh, (vertices, faces), or what has vertices and faces"
+    )
 
 
 def load_mesh(path: str | os.PathLike[str], *, progress: Progress = False) -> Mesh:

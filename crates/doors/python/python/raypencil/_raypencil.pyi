@@ -13,6 +13,7 @@ _OnStage = Callable[[str], object] | None
 _Path = str | PathLike[str]
 _Pairs = Sequence[tuple[str, str]]
 _Arrays = dict[str, NDArray[Any]]
+_Counts = tuple[int, int, int]
 
 @final
 class MeshCore:
@@ -25,6 +26,9 @@ class MeshCore:
     def zero_area_faces(self) -> int: ...
     @property
     def digests(self) -> list[str]: ...
+    def has_tree(self, by_tracer: bool) -> bool: ...
+    def build(self, by_tracer: bool, threads: int, on_stage: _OnStage = None) -> None: ...
+    def count_open_edges(self) -> int: ...
 
 @final
 class SceneCore:
@@ -134,13 +138,22 @@ def load_mesh(path: _Path, on_stage: _OnStage = None) -> MeshCore: ...
 def cast(
     mesh: MeshCore,
     rays: NDArray[np.float64],
+    shape: tuple[int, ...],
+    first: int,
+    values: int,
     by_tracer: bool,
     fronts_only: bool,
     any: bool,
     all: bool,
     margins: bool,
+    threads: int,
+    warn: bool,
     on_stage: _OnStage = None,
-) -> tuple[_Arrays, list[str]]: ...
+) -> tuple[_Arrays, _Counts, list[str]]: ...
+def check_rays(rays: NDArray[np.float64], first: int) -> None: ...
+def cast_warnings(
+    mesh: MeshCore, rays: NDArray[np.float64], fronts_only: bool, all: bool, counts: _Counts
+) -> list[str]: ...
 def judge(
     mesh: MeshCore,
     rays: NDArray[np.float64],

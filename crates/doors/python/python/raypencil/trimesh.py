@@ -14,23 +14,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _arrays
 from ._arrays import NO_FACE
-from ._cast import AllHits, Caster, CastResult, answered
+from ._cast import answered
+from ._cast_result import CastResult, rays_and_places
 from ._errors import RaypencilError
-from ._mesh import Mesh, as_mesh
+from ._mesh import Caster, Mesh, as_mesh
 
 __all__ = ["RayMeshIntersector"]
 
 _Index = NDArray[np.int64]
 _Points = NDArray[np.float64]
-
-
-def _rays_and_groups(hits: AllHits) -> tuple[_Index, NDArray[np.bool_]]:
-    """The ray of each hit, and whether the hit is the first of its group."""
-    start = hits.start.astype(np.int64)
-    index_ray = np.repeat(np.arange(len(start) - 1), start[1:] - start[:-1])
-    begins = np.ones(len(index_ray), dtype=bool)
-    begins[1:] = (index_ray[1:] != index_ray[:-1]) | (hits.group[1:] != hits.group[:-1])
-    return index_ray, begins
 
 
 class RayMeshIntersector:
@@ -39,7 +31,7 @@ class RayMeshIntersector:
     Args:
         mesh: a ``trimesh.Trimesh``, or anything with ``vertices`` (n, 3) and ``faces`` (m, 3). A mesh of trimesh may change:
             it is looked at again for each call.
-        with_: ``"referee"`` is exact; ``"tracer"`` is about a hundred times as fast and rounds. It answers
+        with_: ``"referee"`` is exact; ``"tracer"`` is a few times as fast (docs/evidence/speed.md) and rounds. It answers
             :meth:`intersects_first` and :meth:`intersects_any`; the others are exact in any case.
     """
 
@@ -59,14 +51,16 @@ class RayMeshIntersector:
             self._kept = key, as_mesh(self.mesh)
         return self._kept[1]
 
-    def _cast(self, origins: ArrayLike, directions: ArrayLike, query: Literal["first", "all"]) -> CastResult:
+    def _cast(
+        self, origins: ArrayLike, directions: ArrayLike, query: Literal["first", "any", "all"], *values: str
+    ) -> CastResult:
         origin, direction = np.asanyarray(origins, dtype=np.float64), np.asanyarray(directions, dtype=np.float64)
         if origin.size == 0 and direction.size == 0:
             origin, direction = np.zeros((0, 3)), np.zeros((0, 3))
         if origin.ndim != 2 or origin.shape != direction.shape or origin.shape[1] != 3:
             raise RaypencilError(f"rays are {origin.shape} and {direction.shape}; expected (m, 3) twice")
         with_: Caster = "referee" if query == "all" else self._with
-        return answered(self._mesh(), _arrays.rays(origin, direction), query, with_)
+        return answered(self._mesh(), _arrays.RayParts(origin, direction), query, with_, values)
 
     @overload
     def intersects_id(
@@ -108,16 +102,16 @@ class RayMeshIntersector:
             ``index_triangle`` (h,), ``index_ray`` (h,), and if asked ``locations`` (h, 3).
         """
         if not multiple_hits:
-            first = self._cast(ray_origins, ray_directions, "first")
+            first = self._cast(ray_origins, ray_directions, "first", "point")
             index_ray = np.flatnonzero(first.hit)
             index_tri = first.face[index_ray].astype(np.int64)
             if return_locations:
                 return index_tri, index_ray, np.array(first.point[index_ray]).reshape(-1, 3)
             return index_tri, index_ray
-        answers = self._cast(ray_origins, ray_directions, "all")
+        answers = self._cast(ray_origins, ray_directions, "all", *(["point"] if return_locations else []))
         hits = answers.all
         assert hits is not None
-        index_ray, begins = _rays_and_groups(hits)
+        index_ray, begins = rays_and_places(hits)
         index_tri = hits.face.astype(np.int64)
         if not return_locations:
             return index_tri, index_ray
@@ -155,7 +149,7 @@ class RayMeshIntersector:
             ray_origins, ray_directions: (m, 3).
             kwargs: trimesh's other arguments, which change nothing here.
         """
-        face = self._cast(ray_origins, ray_directions, "first").face
+        face = self._cast(ray_origins, ray_directions, "first", "face").face
         return np.where(face == NO_FACE, -1, face.astype(np.int64))
 
     def intersects_any(self, ray_origins: ArrayLike, ray_directions: ArrayLike, **kwargs: Any) -> NDArray[np.bool_]:
@@ -165,7 +159,9 @@ class RayMeshIntersector:
             ray_origins, ray_directions: (m, 3).
             kwargs: trimesh's other arguments, which change nothing here.
         """
-        return self._cast(ray_origins, ray_directions, "first").hit
+        found = self._cast(ray_origins, ray_directions, "any").any
+        assert found is not None
+        return found.astype(bool)
 
     def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
         """(n,): whether points are inside of a closed mesh: whether it winds around them.
@@ -186,7 +182,7 @@ class RayMeshIntersector:
             raise RaypencilError(f"points have the shape {places.shape}; expected (n, 3)")
         # Any direction will do; along one that is no axis fewer rays meet edges, which take longer.
         hits = self._cast(places, np.broadcast_to([0.41, 0.29, 0.87], places.shape), "all").all
-        assert hits is not None
-        index_ray, begins = _rays_and_groups(hits)
+        assert hits is not None and hits.crossing is not None
+        index_ray, begins = rays_and_places(hits)
         crossings = np.bincount(index_ray[begins], weights=hits.crossing[begins], minlength=len(places))
         return np.asarray(crossings != 0)

@@ -24,7 +24,7 @@ use std::cmp::Ordering;
 use raypencil_scene::{CastRay, FaceId, Side, Sides};
 
 use super::query_ray::{Polynomial, QueryRay, RayNumbers};
-use super::triangle::{Edge, Triangle};
+use super::triangle::{Met, Triangle};
 use super::{ExactCast, bundle};
 use crate::number::Number;
 
@@ -53,9 +53,8 @@ impl ExactCast<'_> {
     pub fn all(&self, ray: &CastRay, sides: Sides) -> Vec<HitGroup> {
         let (query, bundle) = (QueryRay::new(ray), bundle(ray));
         let mut met: Vec<(&Triangle, Side, [f64; 2])> = Vec::new();
-        self.bvh.visit(&bundle, |face| {
-            if let Some(side) = face.met_side(&query, Sides::Both) {
-                let t = face.height(query.fast()).over(face.approach(query.fast()));
+        self.tree.bvh.visit(&bundle, |face| {
+            if let Some(Met { side, t }) = face.met(&query, Sides::Both) {
                 met.push((face, side, [t.low, t.high]));
             }
             bundle.max_range
@@ -94,7 +93,7 @@ fn crossing(face: &Triangle, side: Side, ray: &QueryRay<'_>) -> i32 {
         Side::Back => (Ordering::Greater, -1),
     };
     let is_inside = |k: usize| {
-        let sign = ray.sign(&Edge { face, k });
+        let sign = ray.edge_sign(face, k);
         let displaced = |along: usize| ray.sign(&DisplacedEdge { face, k, part: (largest + along) % 3 });
         sign.then_with(|| displaced(1)).then_with(|| displaced(2)) == inside
     };

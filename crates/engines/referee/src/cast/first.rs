@@ -5,9 +5,11 @@ use std::cmp::Ordering;
 use raypencil_scene::{CastRay, FaceId, Reading, Sides};
 
 use super::query_ray::QueryRay;
-use super::triangle::Triangle;
+use super::triangle::{Met, Triangle};
+use super::values::CastMeeting;
 use super::{ExactCast, bundle, moved_bundle};
 use crate::bvh::{RayBundle, Traversal};
+use crate::number::Interval;
 
 impl ExactCast<'_> {
     /// The faces met at the smallest t, in ascending order: several if they are met at exactly the same t, none if the
@@ -38,6 +40,34 @@ impl ExactCast<'_> {
     /// ```
     pub fn reading(&self, ray: &CastRay, sides: Sides) -> Reading<Vec<FaceId>> {
         self.read(ray, &self.nearest(ray, sides)).map(|faces| faces.iter().map(|face| face.id).collect())
+    }
+
+    /// The first hit as the ray's sensor reads it, whose values are formed when they are asked for, and the number of faces at
+    /// its t. Of several faces it is on the lowest.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use raypencil_referee::ExactCast;
+    /// use raypencil_scene::{CastRay, FaceId, Sides, Triangles};
+    ///
+    /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let triangle = Triangles::new(corners, vec![[0, 1, 2]])?;
+    /// let ray = CastRay::new(DVec3::new(0.25, 0.25, 1.0), DVec3::new(0.0, 0.0, -2.0));
+    /// let cast = ExactCast::new(&triangle);
+    /// let read = cast.first_meeting(&ray, Sides::Both);
+    /// let (meeting, ties) = read.hit().unwrap();
+    /// assert_eq!((meeting.face(), *ties, meeting.t().double), (FaceId(0), 1, 0.5));
+    /// # Ok::<(), raypencil_scene::SceneError>(())
+    /// ```
+    pub fn first_meeting<'r>(&self, ray: &'r CastRay, sides: Sides) -> Reading<(CastMeeting<'r>, u32)> {
+        let query = QueryRay::new(ray);
+        let nearest = self.nearest_of(&query, &bundle(ray), sides);
+        let Some(&face) = nearest.first() else { return Reading::Miss };
+        if ray.t_blind > 0.0 && face.is_before(ray.t_blind, &query) {
+            return Reading::TooNear;
+        }
+        let side = face.seen_side(&query).expect("a face that is met is not parallel");
+        Reading::Hit((CastMeeting::new(ray, query, *face, side), nearest.len() as u32))
     }
 
     /// What the ray's sensor reads of the nearest faces.
@@ -74,7 +104,7 @@ impl ExactCast<'_> {
     /// Whether the ray meets anything.
     pub fn any(&self, ray: &CastRay, sides: Sides) -> bool {
         let (query, bundle) = (QueryRay::new(ray), bundle(ray));
-        let mut walk = Traversal::new(&self.bvh, &bundle);
+        let mut walk = Traversal::new(&self.tree.bvh, &bundle);
         while let Some(leaf) = walk.next_leaf(bundle.max_range) {
             if leaf.iter().any(|face| face.met_side(&query, sides).is_some()) {
                 return true;
@@ -90,16 +120,31 @@ impl ExactCast<'_> {
 
     fn nearest_of(&self, query: &QueryRay<'_>, bundle: &RayBundle, sides: Sides) -> Vec<&Triangle> {
         let mut nearest: Vec<&Triangle> = Vec::new();
-        self.bvh.visit(bundle, |face| {
-            if face.met_side(query, sides).is_some() {
-                match nearest.first().map(|kept| face.compare(kept, query)) {
-                    None | Some(Ordering::Less) => nearest = vec![face],
-                    Some(Ordering::Equal) => nearest.push(face),
-                    Some(Ordering::Greater) => {}
+        // What contains the t of all of them.
+        let mut of_nearest = Interval::between(f64::INFINITY, f64::INFINITY);
+        let length = query.fast().direction.length_squared().high.sqrt();
+        let mut farthest = bundle.max_range;
+        self.tree.bvh.visit(bundle, |face| {
+            let Some(Met { t, .. }) = face.met(query, sides) else { return farthest };
+            // By the intervals of t where these are apart, else exactly.
+            let order = match nearest.first() {
+                None => Ordering::Less,
+                Some(_) if t.low > of_nearest.high => Ordering::Greater,
+                Some(_) if t.high < of_nearest.low => Ordering::Less,
+                Some(kept) => face.compare(kept, query),
+            };
+            match order {
+                Ordering::Less => {
+                    nearest.clear();
+                    nearest.push(face);
+                    of_nearest = t;
+                    // From here on only faces up to the nearest matter. Two roundings, each below 2^-52.
+                    farthest = (t.high * length * (1.0 + 8.0 * f64::EPSILON)).min(bundle.max_range);
                 }
+                Ordering::Equal => nearest.push(face),
+                Ordering::Greater => {}
             }
-            // From here on only faces up to the nearest matter.
-            nearest.first().map_or(bundle.max_range, |kept| kept.farthest_range(query, bundle.max_range))
+            farthest
         });
         nearest.sort_by_key(|face| face.id);
         nearest

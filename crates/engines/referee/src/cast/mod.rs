@@ -37,9 +37,10 @@ mod ruling;
 mod triangle;
 mod values;
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
+use rayon::prelude::*;
 use raypencil_scene::{CastRay, FaceId, Triangles};
 
 use crate::bvh::{Bvh, RayBundle};
@@ -48,7 +49,7 @@ use query_ray::QueryRay;
 use triangle::Triangle;
 
 pub use all::{HitGroup, SidedFace};
-pub use values::CastHit;
+pub use values::{CastHit, CastMeeting};
 
 /// The exact answers to any rays on a mesh.
 ///
@@ -74,6 +75,46 @@ pub use values::CastHit;
 #[derive(Debug)]
 pub struct ExactCast<'t> {
     mesh: &'t Triangles,
+    tree: Arc<Tree>,
+}
+
+/// A mesh with the hierarchy of its faces, kept for many questions. A clone is the same one.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use glam::DVec3;
+/// use raypencil_referee::CastTree;
+/// use raypencil_scene::{CastRay, FaceId, Sides, Triangles};
+///
+/// let mesh = Triangles::new(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]])?;
+/// let tree = CastTree::new(&Arc::new(mesh));
+/// // Asking builds nothing.
+/// let ray = CastRay::new(DVec3::new(0.25, 0.25, 1.0), DVec3::NEG_Z);
+/// assert_eq!(tree.cast().first(&ray, Sides::Both), [FaceId(0)]);
+/// # Ok::<(), raypencil_scene::SceneError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct CastTree {
+    mesh: Arc<Triangles>,
+    tree: Arc<Tree>,
+}
+
+impl CastTree {
+    /// Builds the hierarchy, on all threads.
+    pub fn new(mesh: &Arc<Triangles>) -> Self {
+        Self { mesh: Arc::clone(mesh), tree: Arc::new(Tree::of(mesh)) }
+    }
+
+    /// The exact answers to any rays on the mesh.
+    pub fn cast(&self) -> ExactCast<'_> {
+        ExactCast { mesh: &self.mesh, tree: Arc::clone(&self.tree) }
+    }
+}
+
+/// What is made of a mesh once.
+#[derive(Debug)]
+struct Tree {
     bvh: Bvh<Triangle>,
     /// The diagonal of the mesh's bounding box, to which margins are capped.
     diagonal: f64,
@@ -83,22 +124,31 @@ pub struct ExactCast<'t> {
     seams: OnceLock<Seams>,
 }
 
-impl<'t> ExactCast<'t> {
-    /// Builds the hierarchy of a mesh's faces.
-    pub fn new(mesh: &'t Triangles) -> Self {
-        let faces = (0..mesh.faces().len() as u32).map(|index| Triangle::of(mesh, FaceId(index)));
+impl Tree {
+    fn of(mesh: &Triangles) -> Self {
+        let indices = (0..mesh.faces().len() as u32).into_par_iter();
+        let mut faces: Vec<Triangle> = indices.map(|index| Triangle::of(mesh, FaceId(index))).collect();
+        if !faces.par_iter().all(Triangle::has_area) {
+            faces.retain(Triangle::has_area);
+        }
         let [low, high] = mesh.bounds().unwrap_or_default();
         Self {
-            mesh,
-            bvh: Bvh::build(faces.filter(Triangle::has_area).collect()),
+            bvh: Bvh::build(faces),
             diagonal: length(high - low),
             largest_coordinate: low.abs().max(high.abs()).max_element(),
             seams: OnceLock::new(),
         }
     }
+}
+
+impl<'t> ExactCast<'t> {
+    /// Builds the hierarchy of a mesh's faces, on all threads.
+    pub fn new(mesh: &'t Triangles) -> Self {
+        Self { mesh, tree: Arc::new(Tree::of(mesh)) }
+    }
 
     fn seams(&self) -> &Seams {
-        self.seams.get_or_init(|| Seams::of(self.mesh, &self.bvh))
+        self.tree.seams.get_or_init(|| Seams::of(self.mesh, &self.tree.bvh))
     }
 
     /// A face of the mesh, if the mesh has it.

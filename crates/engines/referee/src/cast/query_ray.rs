@@ -1,11 +1,15 @@
-//! One ray in both numbers: intervals of f64, and exactly where these are in doubt.
+//! One ray in three numbers: plain f64 with a bound for the sides of edges, intervals of f64, and exactly where these are in
+//! doubt.
 
 use std::cell::OnceCell;
 use std::cmp::Ordering;
 
 use raypencil_scene::CastRay;
 
+use super::triangle::{Edge, Triangle};
+use crate::edge_filter::EdgeFilter;
 use crate::number::{Dyadic, Interval, Number};
+use crate::ray::ScaledRay;
 use crate::vector::Vector;
 
 /// Origin o and direction d of a ray.
@@ -39,18 +43,25 @@ pub(super) struct QueryRay<'r> {
     ray: &'r CastRay,
     /// By how much the ray is moved sideways, if it is.
     moved: Option<[f64; 2]>,
+    filter: EdgeFilter,
     fast: RayNumbers<Interval>,
     exact: OnceCell<RayNumbers<Dyadic>>,
 }
 
 impl<'r> QueryRay<'r> {
     pub(super) fn new(ray: &'r CastRay) -> Self {
-        Self { ray, moved: None, fast: RayNumbers::of(ray), exact: OnceCell::new() }
+        let filter = EdgeFilter::exactly(ray.origin, ray.direction);
+        Self { ray, moved: None, filter, fast: RayNumbers::of(ray), exact: OnceCell::new() }
     }
 
     /// The ray moved sideways by `by`, along the two vectors of [`CastRay::across`].
     pub(super) fn moved(ray: &'r CastRay, by: [f64; 2]) -> Self {
-        Self { ray, moved: Some(by), fast: RayNumbers::moved(ray, by), exact: OnceCell::new() }
+        let fast = RayNumbers::<Interval>::moved(ray, by);
+        let RayNumbers { origin, direction } = fast.clone();
+        let one = Interval::of(1.0);
+        let filter =
+            EdgeFilter::new(&ScaledRay { origin, origin_scale: one, direction, direction_scale: one });
+        Self { ray, moved: Some(by), filter, fast, exact: OnceCell::new() }
     }
 
     /// |d|, to a few roundings.
@@ -85,17 +96,71 @@ impl<'r> QueryRay<'r> {
         })
     }
 
+    /// The exact sign of the edge from corner `k` of a face: in plain f64 if that is certain, else as [`sign`](Self::sign).
+    #[inline]
+    pub(super) fn edge_sign(&self, face: &Triangle, k: usize) -> Ordering {
+        match self.filter.sign(face.corners, k) {
+            Some(sign) => {
+                count(Path::Filter);
+                sign
+            }
+            None => self.sign(&Edge { face, k }),
+        }
+    }
+
     /// The exact sign: by the interval if that is certain, else by exact arithmetic.
     #[inline]
     pub(super) fn sign(&self, polynomial: &impl Polynomial) -> Ordering {
-        match polynomial.value(&self.fast).sign() {
-            Some(sign) => sign,
+        self.sign_or(polynomial.value(&self.fast), polynomial)
+    }
+
+    /// The exact sign of a polynomial of which the interval is known.
+    #[inline]
+    pub(super) fn sign_or(&self, fast: Interval, polynomial: &impl Polynomial) -> Ordering {
+        match fast.sign() {
+            Some(sign) => {
+                count(Path::Interval);
+                sign
+            }
             None => self.exact_sign(polynomial),
         }
     }
 
     #[cold]
     fn exact_sign(&self, polynomial: &impl Polynomial) -> Ordering {
+        count(Path::Exact);
         polynomial.value(self.exact()).sign().unwrap_or(Ordering::Equal)
     }
 }
+
+/// How a sign was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Path {
+    /// In plain f64.
+    Filter,
+    /// In intervals.
+    Interval,
+    /// In exact arithmetic.
+    Exact,
+}
+
+#[cfg(test)]
+thread_local! {
+    /// Signs that this thread found on each [`Path`].
+    pub(super) static PATHS: std::cell::Cell<[u64; 3]> = const { std::cell::Cell::new([0; 3]) };
+}
+
+/// Counts a path, in tests.
+#[inline]
+fn count(_path: Path) {
+    #[cfg(test)]
+    PATHS.with(|paths| {
+        let mut counts = paths.get();
+        counts[_path as usize] += 1;
+        paths.set(counts);
+    });
+}
+
+#[cfg(test)]
+#[path = "../../tests/unit/cast_paths.rs"]
+mod tests;

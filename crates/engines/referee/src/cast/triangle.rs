@@ -74,33 +74,50 @@ impl Triangle {
     /// The side that the ray meets, edges and corners included, within both ends of the ray; `None` if it does not
     /// meet the face, or on no side that counts.
     pub(super) fn met_side(&self, ray: &QueryRay<'_>, sides: Sides) -> Option<Side> {
+        self.met(ray, sides).map(|met| met.side)
+    }
+
+    /// How the ray meets the face, as [`met_side`](Self::met_side).
+    #[inline]
+    pub(super) fn met(&self, ray: &QueryRay<'_>, sides: Sides) -> Option<Met> {
         // The cheapest conditions, and those most likely to fail, come first: edges of both signs are no hit.
-        let (mut front, mut back) = (true, sides.include(Side::Back));
+        let (mut front, mut back) = (false, false);
         for k in 0..3 {
-            match ray.sign(&Edge { face: self, k }) {
-                Ordering::Greater => front = false,
-                Ordering::Less => back = false,
+            match ray.edge_sign(self, k) {
+                Ordering::Greater => back = true,
+                Ordering::Less => front = true,
                 Ordering::Equal => {}
             }
-            if !front && !back {
+            if back && (front || !sides.include(Side::Back)) {
                 return None;
             }
         }
-        let side = match ray.sign(&Approach(self)) {
-            Ordering::Less if front => Side::Front,
-            Ordering::Greater if back => Side::Back,
-            // All three edges have the sign of their sum, n.d, or are 0: what is left is a parallel face.
+        // The sum of the three is n.d. If all are 0, the face is parallel.
+        let (side, towards) = match (front, back) {
+            (true, _) => (Side::Front, Ordering::Less),
+            (_, true) => (Side::Back, Ordering::Greater),
             _ => return None,
         };
-        let towards = if side == Side::Front { Ordering::Less } else { Ordering::Greater };
-        let from = ray.sign(&Beyond { face: self, t: ray.t_min() });
+        let (height, approach) = self.height_and_approach(ray.fast());
+        let beyond = |t: f64| {
+            let fast = if t == 0.0 { height } else { height.sub(&approach.mul(&Interval::of(t))) };
+            ray.sign_or(fast, &Beyond { face: self, t })
+        };
+        let from = beyond(ray.t_min());
         if from != towards && from != Ordering::Equal {
             return None;
         }
-        if ray.t_max() < f64::INFINITY && ray.sign(&Beyond { face: self, t: ray.t_max() }) == towards {
+        if ray.t_max() < f64::INFINITY && beyond(ray.t_max()) == towards {
             return None;
         }
-        Some(side)
+        Some(Met { side, t: height.over(approach) })
+    }
+
+    /// n.a' and n.d.
+    #[inline]
+    fn height_and_approach(&self, ray: &RayNumbers<Interval>) -> (Interval, Interval) {
+        let normal = self.normal::<Interval>();
+        (normal.dot(&self.corner(0).sub(&ray.origin)), normal.dot(&ray.direction))
     }
 
     /// Whether the plane is met before this t, exactly; at exactly this t it is not.
@@ -125,18 +142,14 @@ impl Triangle {
         let nearness = ray.sign(&Nearness { face: self, other });
         if product { nearness } else { nearness.reverse() }
     }
+}
 
-    /// An upper bound of the range at which the ray meets the face, if it does.
-    pub(super) fn farthest_range(&self, ray: &QueryRay<'_>, max_range: f64) -> f64 {
-        let (height, approach) = (self.height(ray.fast()), self.approach(ray.fast()));
-        let least = approach.low.max(-approach.high);
-        if !(least > 0.0) {
-            return max_range;
-        }
-        let length = ray.fast().direction.length_squared().high.sqrt();
-        // Four roundings, each below 2^-52. Infinity times 0 is NaN, of which `min` takes the other.
-        (height.magnitude() * length / least * (1.0 + 8.0 * f64::EPSILON)).min(max_range)
-    }
+/// How a ray meets a face.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Met {
+    pub(super) side: Side,
+    /// What contains t.
+    pub(super) t: Interval,
 }
 
 /// d.(a' x (b - a)) for the edge from corner k.

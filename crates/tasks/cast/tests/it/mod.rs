@@ -2,6 +2,7 @@
 
 mod bounds;
 mod cloud;
+mod columns;
 mod lidar;
 mod packs;
 mod reported;

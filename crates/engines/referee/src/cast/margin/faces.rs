@@ -42,7 +42,7 @@ enum EventKind {
 
 impl ExactCast<'_> {
     pub(super) fn face_margin(&self, frame: &Frame<'_>, nearest: &[&Triangle], sides: Sides) -> Margin {
-        let cap = self.diagonal;
+        let cap = self.tree.diagonal;
         let query = QueryRay::new(frame.ray);
         let seen = |face: &'_ Triangle| face.seen_side(&query);
         let nearest: Vec<SeenFace<'_>> =
@@ -73,7 +73,7 @@ impl ExactCast<'_> {
         let first_range = frame.ranges()[0];
         let is_between = |range: &[f64; 2]| range[0] <= farthest && range[1] >= first_range;
         let own: BTreeSet<FaceId> = nearest.iter().map(|one| one.face.id).collect();
-        let mut nearby = Nearby::new(&self.bvh);
+        let mut nearby = Nearby::new(&self.tree.bvh);
         while nearby.size() < lo {
             let faces =
                 nearby.open(frame, |_, span| super::frame::least_size(span) < lo && is_between(&span[2]));
@@ -108,7 +108,7 @@ impl ExactCast<'_> {
     /// A size of displacement below which f64 numbers can hardly tell one ray from another: 2^-52 of the largest
     /// coordinate.
     pub(super) fn smallest_size(&self, frame: &Frame<'_>) -> f64 {
-        f64::EPSILON * self.largest_coordinate.max(frame.ray.origin.abs().max_element())
+        f64::EPSILON * self.tree.largest_coordinate.max(frame.ray.origin.abs().max_element())
     }
 
     /// A displaced ray with another answer, as near to `lo` as it can be found.

@@ -81,12 +81,12 @@ const PLACE_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 impl ExactCast<'_> {
     /// The margin of the surface of a ray that hits. No jump is nearer than `from`, the margin of the faces.
     pub(super) fn surface_margin(&self, frame: &Frame<'_>, from: f64, sides: Sides) -> Margin {
-        let cap = self.diagonal;
+        let cap = self.tree.diagonal;
         let query = QueryRay::new(frame.ray);
         let seams = self.seams();
         let direction = super::super::bundle(frame.ray).direction;
         let [first, last] = frame.ranges();
-        let mut nearby = Nearby::new(&self.bvh);
+        let mut nearby = Nearby::new(&self.tree.bvh);
         let mut tasks = Tasks::default();
         loop {
             let size = nearby.size().min(tasks.size());
@@ -234,7 +234,7 @@ impl ExactCast<'_> {
         let mut last: Option<(f64, FaceId, Side)> = None;
         let mut doubtful: Vec<(&Triangle, Side)> = Vec::new();
         let mut is_hidden = false;
-        self.bvh.visit(&bundle, |face| {
+        self.tree.bvh.visit(&bundle, |face| {
             if is_hidden || !frame.may_show(&face.corners, at, bundle.start_radius) {
                 return bundle.max_range;
             }
@@ -296,7 +296,7 @@ impl ExactCast<'_> {
         let numbers = frame.exact();
         let bundle = self.bundle_at(frame, point.point(&Place::start()));
         let mut stands_alone = true;
-        self.bvh.visit(&bundle, |face| {
+        self.tree.bvh.visit(&bundle, |face| {
             if let Some(side) = face.seen_side(query).filter(|side| sides.include(*side)) {
                 let flat = self.flat(numbers, face.id, side);
                 stands_alone &= match met_at(point, &flat, numbers) {

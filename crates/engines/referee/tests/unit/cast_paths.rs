@@ -1,0 +1,140 @@
+//! The fast path against exact arithmetic, sign by sign, on rays that are hard for it. Counters prove that each path was taken.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+use raypencil_scene::{FaceId, Side, Sides};
+
+use super::*;
+use crate::splitmix::SplitMix64;
+
+/// A ray and the corners of a face.
+type Case = (CastRay, [DVec3; 3]);
+
+fn point(random: &mut SplitMix64) -> DVec3 {
+    DVec3::new(random.part(), random.part(), random.part())
+}
+
+/// Anywhere.
+fn anywhere(random: &mut SplitMix64) -> Case {
+    let (from, to) = (4.0 * point(random), point(random));
+    (CastRay::new(from, to - from), [point(random), point(random), point(random)])
+}
+
+/// Small whole numbers: rays through edges and corners, parallel faces, ends on faces.
+fn lattice(random: &mut SplitMix64) -> Case {
+    let mut whole =
+        |size: u32| DVec3::from_array([0; 3].map(|_| f64::from(random.below(size)) - f64::from(size / 2)));
+    let (origin, direction) = (whole(7), whole(5));
+    let direction = if direction == DVec3::ZERO { DVec3::X } else { direction };
+    let corners = [whole(5), whole(5), whole(5)];
+    let ray = CastRay::new(origin, direction);
+    (CastRay { t_min: f64::from(random.below(3)), t_max: 2.0 + f64::from(random.below(3)), ..ray }, corners)
+}
+
+/// Aimed at a point of an edge, and rounded: beside it by some last digits.
+fn at_an_edge(random: &mut SplitMix64) -> Case {
+    let corners = [point(random), point(random), point(random)];
+    let along = 0.5 + 0.5 * random.part();
+    let (from, to) = (4.0 * point(random), corners[0] + (corners[1] - corners[0]) * along);
+    (CastRay::new(from, to - from), corners)
+}
+
+/// The same, with numbers that nearly over- or underflow.
+fn huge_and_tiny(random: &mut SplitMix64) -> Case {
+    let (ray, corners) = at_an_edge(random);
+    let size = [1e28, 1e-60, 1e-100, 1e-140][random.below(4) as usize];
+    let long = [1e28, 1.0, 1e-120, 1e-290][random.below(4) as usize];
+    let ray = CastRay { origin: ray.origin * size, direction: ray.direction * long, ..ray };
+    (ray, corners.map(|corner| corner * size))
+}
+
+/// Slender faces, which rounding tips over.
+fn slender(random: &mut SplitMix64) -> Case {
+    let (ray, [a, b, _]) = at_an_edge(random);
+    let width = [1e-6, 1e-9, 1e-12, 1e-15][random.below(4) as usize];
+    (ray, [a, b, a + (b - a) * 0.3 + width * point(random)])
+}
+
+/// How a ray meets a face, by exact arithmetic alone.
+fn met_exactly(ray: &CastRay, face: &Triangle, sides: Sides) -> Option<Side> {
+    let numbers = RayNumbers::<Dyadic>::of(ray);
+    let sign = |number: Dyadic| number.sign().expect("an exact sign");
+    let edges = [0, 1, 2].map(|k| sign(face.edge(k, &numbers)));
+    let approach = sign(face.approach(&numbers));
+    let towards = match approach {
+        Ordering::Equal => return None,
+        other => other,
+    };
+    let beyond = |t: f64| sign(face.height(&numbers).sub(&face.approach(&numbers).mul(&Dyadic::of(t))));
+    let side = if towards == Ordering::Less { Side::Front } else { Side::Back };
+    let is_inside = edges.iter().all(|&edge| edge == Ordering::Equal || edge == towards);
+    let is_after = beyond(ray.t_min) != towards.reverse();
+    let is_before = ray.t_max == f64::INFINITY || beyond(ray.t_max) != towards;
+    (sides.include(side) && is_inside && is_after && is_before).then_some(side)
+}
+
+#[test]
+fn every_sign_and_every_hit_is_that_of_exact_arithmetic() {
+    let families: [(&str, fn(&mut SplitMix64) -> Case); 5] = [
+        ("anywhere", anywhere),
+        ("lattice", lattice),
+        ("at an edge", at_an_edge),
+        ("huge and tiny", huge_and_tiny),
+        ("slender", slender),
+    ];
+    let mut random = SplitMix64(45);
+    let mut ways = Vec::new();
+    for (name, family) in families {
+        PATHS.set([0; 3]);
+        let mut hits = 0;
+        for _ in 0..20_000 {
+            let (ray, corners) = family(&mut random);
+            let face = Triangle { id: FaceId(0), corners };
+            let query = QueryRay::new(&ray);
+            for k in 0..3 {
+                let exactly = face.edge(k, query.exact()).sign().expect("an exact sign");
+                assert_eq!(query.edge_sign(&face, k), exactly, "{name}: edge {k} of {corners:?} by {ray:?}");
+            }
+            for sides in [Sides::Both, Sides::Fronts] {
+                let met = face.met(&query, sides);
+                let side = met_exactly(&ray, &face, sides);
+                assert_eq!(met.map(|met| met.side), side, "{name}: {corners:?} by {ray:?}");
+                hits += usize::from(side.is_some());
+            }
+        }
+        assert!(hits > 100, "{name}: {hits} hits are too few to tell");
+        ways.push((name, PATHS.get()));
+    }
+    let of = |name: &str| ways.iter().find(|(of, _)| *of == name).expect("a family").1;
+    // Where rays go anywhere, the first path does nearly all; what is hard takes the others.
+    let [filter, interval, exact] = of("anywhere");
+    assert!(filter > 100_000 && exact < 10, "{filter} {interval} {exact}");
+    for name in ["at an edge", "huge and tiny", "slender"] {
+        let [filter, interval, exact] = of(name);
+        assert!(filter > 1000 && interval > 1000 && exact > 1000, "{name}: {filter} {interval} {exact}");
+    }
+    assert!(of("lattice")[2] > 1000, "{:?}", of("lattice"));
+}
+
+#[test]
+fn a_moved_ray_has_the_signs_of_exact_arithmetic() {
+    let mut random = SplitMix64(46);
+    PATHS.set([0; 3]);
+    for _ in 0..5000 {
+        let (ray, corners) = at_an_edge(&mut random);
+        let face = Triangle { id: FaceId(0), corners };
+        let far = [1e-17, 1e-15, 3e-15, 1e-14, 1e-13][random.below(5) as usize];
+        let by = [0, 1].map(|_| far * random.part());
+        let query = QueryRay::moved(&ray, by);
+        for k in 0..3 {
+            let exactly = face.edge(k, query.exact()).sign().expect("an exact sign");
+            assert_eq!(
+                query.edge_sign(&face, k),
+                exactly,
+                "edge {k} of {corners:?} by {ray:?} moved by {by:?}"
+            );
+        }
+    }
+    assert!(PATHS.get().iter().all(|&count| count > 20), "{:?}", PATHS.get());
+}
