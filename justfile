@@ -82,6 +82,10 @@ speed MESH="":
     cargo build --release -p raypencil --features examples --example speed
     python3 reference/speed/speed.py target/release/examples/speed {{ if MESH == "" { "" } else { "--mesh " + quote(MESH) } }} -o docs/speed.md
 
+# The times of any rays from Python, beside Embree, Open3D and Warp where they are installed: docs/evidence/speed.md. PYTHON has raypencil
+speed-rays PYTHON="python3" *ARGUMENTS:
+    {{ PYTHON }} reference/speed/rays.py {{ ARGUMENTS }} -o docs/evidence/speed.md
+
 # Which tables and figures of the documents are older than the rules that they show; a test fails on these
 stale:
     cargo run -p raypencil-tests --features examples --example stale

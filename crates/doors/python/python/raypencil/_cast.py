@@ -224,7 +224,7 @@ class Asked:
             core, rays, shape, first, self.values, self.by_tracer, self.fronts_only, self.any, self.all, self.margins,
             self.threads, True, on_stage,
         )  # fmt: skip
-        return CastResult(arrays, shape, tuple(warnings))
+        return CastResult._of_engine(arrays, shape, warnings)
 
     def _names(self) -> list[str]:
         """The arrays with a value for each ray that are answered."""

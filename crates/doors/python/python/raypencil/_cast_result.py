@@ -112,9 +112,14 @@ class CastResult:
         self.shape = shape
         #: What looks wrong in the rays and their mesh: no ray hits, most hits are backs, the mesh is open where crossings are asked.
         self.warnings = warnings
-        for array in arrays.values():
-            if array.flags.writeable:
-                array.flags.writeable = False
+        _arrays.frozen(arrays)
+
+    @classmethod
+    def _of_engine(cls, arrays: dict[str, NDArray[Any]], shape: _arrays.Shape, warnings: list[str]) -> CastResult:
+        """The same of arrays that are read-only already."""
+        result = cls.__new__(cls)
+        result.arrays, result.shape, result.warnings = arrays, shape, tuple(warnings)
+        return result
 
     def _value(self, name: str) -> NDArray[Any]:
         try:

@@ -11,6 +11,9 @@ use crate::splitmix::SplitMix64;
 /// A ray and the corners of a face.
 type Case = (CastRay, [DVec3; 3]);
 
+/// What draws a case.
+type Family = fn(&mut SplitMix64) -> Case;
+
 fn point(random: &mut SplitMix64) -> DVec3 {
     DVec3::new(random.part(), random.part(), random.part())
 }
@@ -76,7 +79,7 @@ fn met_exactly(ray: &CastRay, face: &Triangle, sides: Sides) -> Option<Side> {
 
 #[test]
 fn every_sign_and_every_hit_is_that_of_exact_arithmetic() {
-    let families: [(&str, fn(&mut SplitMix64) -> Case); 5] = [
+    let families: [(&str, Family); 5] = [
         ("anywhere", anywhere),
         ("lattice", lattice),
         ("at an edge", at_an_edge),

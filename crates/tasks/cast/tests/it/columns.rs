@@ -21,10 +21,10 @@ fn ground() -> Triangles {
 fn rays() -> Vec<CastRay> {
     let ray = |k: u32| {
         let (x, y) = (f64::from(k % 41) * 0.25 - 1.0, f64::from(k / 41 % 41) * 0.25 - 1.0);
-        let up = if k % 5 == 0 { -1.0 } else { 1.0 };
+        let up = if k.is_multiple_of(5) { -1.0 } else { 1.0 };
         let ray =
             CastRay::new(DVec3::new(x, y, 5.0 * up), DVec3::new(0.1 * f64::from(k % 3), 0.0, -2.0 * up));
-        CastRay { t_blind: if k % 7 == 0 { 2.4 } else { 0.0 }, ..ray }
+        CastRay { t_blind: if k.is_multiple_of(7) { 2.4 } else { 0.0 }, ..ray }
     };
     (0..1700).map(ray).collect()
 }
