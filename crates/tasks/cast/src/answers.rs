@@ -67,6 +67,14 @@ pub struct Answers {
     pub margins: Option<Vec<Margins>>,
 }
 
+/// A side as files have it: 1 front, -1 back.
+pub(crate) fn side_number(side: Side) -> i8 {
+    match side {
+        Side::Front => 1,
+        Side::Back => -1,
+    }
+}
+
 impl Answers {
     /// First hits by the tracer, in `f64`; each is one face, the lowest of those at its t.
     pub fn by_tracer(mesh: &Triangles, rays: &[CastRay], sides: Sides) -> Self {

@@ -5,7 +5,7 @@ use raypencil_referee::{CastMeeting, ExactCast};
 use raypencil_scene::{CastRay, Reading, Side, Sides};
 use raypencil_tracer::{TracedHit, TracerCast};
 
-use crate::write::side_number;
+use crate::answers::side_number;
 
 /// Rays that one thread answers by itself.
 const RAYS_A_PART: usize = 256;

@@ -8,10 +8,10 @@ use raypencil_files::{
 use raypencil_mesh_io::{FileFacts, FileFrame, FileUnits, UpAxis};
 use raypencil_referee::Margin;
 use raypencil_report::VERSION;
-use raypencil_scene::{CastRay, NamedRaySet, Side, Sides, Triangles};
+use raypencil_scene::{CastRay, NamedRaySet, Sides, Triangles};
 use serde_json::{Value, json};
 
-use crate::answers::{Answers, FirstHit, GroupAtT};
+use crate::answers::{Answers, FirstHit, GroupAtT, side_number};
 use crate::cloud::{CloudFrame, write_pcd, write_ply};
 use crate::range_picture::{range_picture, top_picture};
 use crate::warnings::cast_warnings;
@@ -35,13 +35,6 @@ pub struct CastSource {
 
 /// What stands for no face.
 const NO_FACE: u32 = u32::MAX;
-
-pub(crate) fn side_number(side: Side) -> i8 {
-    match side {
-        Side::Front => 1,
-        Side::Back => -1,
-    }
-}
 
 /// Writes a folder: an array for each value, of the rays' own shape, and last `summary.json`. Returns its path.
 ///

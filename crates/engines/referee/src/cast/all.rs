@@ -93,7 +93,7 @@ fn crossing(face: &Triangle, side: Side, ray: &QueryRay<'_>) -> i32 {
         Side::Back => (Ordering::Greater, -1),
     };
     let is_inside = |k: usize| {
-        let sign = ray.edge_sign(face, k);
+        let sign = face.edge_sign(k, ray);
         let displaced = |along: usize| ray.sign(&DisplacedEdge { face, k, part: (largest + along) % 3 });
         sign.then_with(|| displaced(1)).then_with(|| displaced(2)) == inside
     };

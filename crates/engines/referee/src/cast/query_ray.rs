@@ -4,9 +4,9 @@
 use std::cell::OnceCell;
 use std::cmp::Ordering;
 
+use glam::DVec3;
 use raypencil_scene::CastRay;
 
-use super::triangle::{Edge, Triangle};
 use crate::edge_filter::EdgeFilter;
 use crate::number::{Dyadic, Interval, Number};
 use crate::ray::ScaledRay;
@@ -96,16 +96,14 @@ impl<'r> QueryRay<'r> {
         })
     }
 
-    /// The exact sign of the edge from corner `k` of a face: in plain f64 if that is certain, else as [`sign`](Self::sign).
+    /// On which side of the edge from corner `k` of a triangle the ray passes, in plain f64; `None` if that is not certain.
     #[inline]
-    pub(super) fn edge_sign(&self, face: &Triangle, k: usize) -> Ordering {
-        match self.filter.sign(face.corners, k) {
-            Some(sign) => {
-                count(Path::Filter);
-                sign
-            }
-            None => self.sign(&Edge { face, k }),
+    pub(super) fn certain_side(&self, corners: [DVec3; 3], k: usize) -> Option<Ordering> {
+        let side = self.filter.sign(corners, k);
+        if side.is_some() {
+            count(Path::Filter);
         }
+        side
     }
 
     /// The exact sign: by the interval if that is certain, else by exact arithmetic.
@@ -160,7 +158,3 @@ fn count(_path: Path) {
         paths.set(counts);
     });
 }
-
-#[cfg(test)]
-#[path = "../../tests/unit/cast_paths.rs"]
-mod tests;

@@ -71,6 +71,12 @@ impl Triangle {
         ray.direction.dot(&a.sub(&ray.origin).cross(&b.sub(&a)))
     }
 
+    /// The exact sign of [`Edge`] from corner k: in plain f64 if that is certain.
+    #[inline]
+    pub(super) fn edge_sign(&self, k: usize, ray: &QueryRay<'_>) -> Ordering {
+        ray.certain_side(self.corners, k).unwrap_or_else(|| ray.sign(&Edge { face: self, k }))
+    }
+
     /// The side that the ray meets, edges and corners included, within both ends of the ray; `None` if it does not
     /// meet the face, or on no side that counts.
     pub(super) fn met_side(&self, ray: &QueryRay<'_>, sides: Sides) -> Option<Side> {
@@ -83,7 +89,7 @@ impl Triangle {
         // The cheapest conditions, and those most likely to fail, come first: edges of both signs are no hit.
         let (mut front, mut back) = (false, false);
         for k in 0..3 {
-            match ray.edge_sign(self, k) {
+            match self.edge_sign(k, ray) {
                 Ordering::Greater => back = true,
                 Ordering::Less => front = true,
                 Ordering::Equal => {}
@@ -198,3 +204,7 @@ impl Polynomial for Nearness<'_> {
         first.sub(&self.other.height(ray).mul(&self.face.approach(ray)))
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/cast_paths.rs"]
+mod tests;

@@ -3,8 +3,9 @@
 use std::cmp::Ordering;
 
 use glam::DVec3;
-use raypencil_scene::{FaceId, Side, Sides};
+use raypencil_scene::CastRay;
 
+use super::super::query_ray::PATHS;
 use super::*;
 use crate::splitmix::SplitMix64;
 
@@ -97,7 +98,7 @@ fn every_sign_and_every_hit_is_that_of_exact_arithmetic() {
             let query = QueryRay::new(&ray);
             for k in 0..3 {
                 let exactly = face.edge(k, query.exact()).sign().expect("an exact sign");
-                assert_eq!(query.edge_sign(&face, k), exactly, "{name}: edge {k} of {corners:?} by {ray:?}");
+                assert_eq!(face.edge_sign(k, &query), exactly, "{name}: edge {k} of {corners:?} by {ray:?}");
             }
             for sides in [Sides::Both, Sides::Fronts] {
                 let met = face.met(&query, sides);
@@ -133,7 +134,7 @@ fn a_moved_ray_has_the_signs_of_exact_arithmetic() {
         for k in 0..3 {
             let exactly = face.edge(k, query.exact()).sign().expect("an exact sign");
             assert_eq!(
-                query.edge_sign(&face, k),
+                face.edge_sign(k, &query),
                 exactly,
                 "edge {k} of {corners:?} by {ray:?} moved by {by:?}"
             );

@@ -24,7 +24,7 @@ use raypencil_scene::{CastRay, FaceId, Precision, Progress, Reading, Sides, Tria
 
 use super::stated::Stated;
 use super::verdict::{CastValue, Comparison, RayVerdict, ValueTally, Wrong};
-use crate::write::side_number;
+use crate::answers::side_number;
 
 /// Compares stated first hits with the exact ones, on all threads. `precision` is that of the arithmetic that they come from.
 ///
