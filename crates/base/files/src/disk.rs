@@ -169,10 +169,10 @@ impl Seek for Temporary {
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        if let Some(file) = self.file.take() {
-            if told(Operation::RemoveFile, file.path()).is_err() {
-                let _ = file.keep();
-            }
+        if let Some(file) = self.file.take()
+            && told(Operation::RemoveFile, file.path()).is_err()
+        {
+            let _ = file.keep();
         }
     }
 }
@@ -210,10 +210,10 @@ impl TemporaryFolder {
 
 impl Drop for TemporaryFolder {
     fn drop(&mut self) {
-        if let Some(folder) = self.folder.take() {
-            if told(Operation::RemoveFolder, folder.path()).is_err() {
-                let _ = folder.keep();
-            }
+        if let Some(folder) = self.folder.take()
+            && told(Operation::RemoveFolder, folder.path()).is_err()
+        {
+            let _ = folder.keep();
         }
     }
 }

@@ -101,8 +101,11 @@ impl Turns {
 /// The choices of an order: who went, and whether the other could have.
 type Choices = Vec<(usize, bool)>;
 
+/// Which run ended, and how, in the order of their ends.
+type Ends = Vec<(usize, Result<(), String>)>;
+
 /// Both runs, in the order that begins so and then goes on with whoever went last. Returns the choices, and who ended when, how.
-fn in_order(tree: &Path, runs: [Run; 2], begin: &[usize]) -> (Choices, Vec<(usize, Result<(), String>)>) {
+fn in_order(tree: &Path, runs: [Run; 2], begin: &[usize]) -> (Choices, Ends) {
     let turns = Arc::new(Turns::default());
     let waiting = turns.clone();
     let watcher = move |_: Operation, _: &Path| {

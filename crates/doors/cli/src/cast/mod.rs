@@ -11,7 +11,8 @@ use raypencil::cast::{
 };
 use raypencil::io::{
     FileError, FileFacts, FileFrame, FileUnits, Limits, LoadedRaySets, OutputFolder, PolygonFacts, RayScene,
-    bytes, create_folder, file_warnings, hex_digits, load_ray_scene, read_ray_sets, read_triangles, sha256,
+    begin_output_folder, bytes, file_warnings, hex_digits, load_ray_scene, read_ray_sets, read_triangles,
+    sha256,
 };
 use raypencil::survey::{Warning, WarningCode};
 use raypencil::{CastRay, NamedRaySet, Progress, Sides, Triangles};
@@ -173,7 +174,8 @@ fn write_page(
     answers: &Answers,
     compared: &Option<Compared<'_>>,
 ) -> Result<(), Trouble> {
-    create_folder(folder)?;
+    // The mark of an earlier run goes first: it says that its page and its answers are all there.
+    begin_output_folder(folder, "summary.json")?;
     if let Some(compared) = compared {
         compared.write(folder, shape)?;
     }
