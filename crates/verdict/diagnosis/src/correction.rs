@@ -102,8 +102,16 @@ impl Correction {
         };
         // A number that is fitted to lengths in another unit is that unit.
         let is_length = |mistake: &Mistake| matches!(mistake, Mistake::Unit(_) | Mistake::Affine { .. });
-        kind(&self.mistake) != 0 && kind(&self.mistake) == kind(&other.mistake)
-            || is_length(&self.mistake) && is_length(&other.mistake)
+        // A depth as t is a depth times one number, and from the plane less one number: with a fitted line it is another line.
+        let is_line = |mistake: &Mistake| matches!(mistake, Mistake::Affine { of: Length::Depth, .. });
+        let is_of_depth = |mistake: &Mistake| {
+            matches!(mistake, Mistake::ParameterForDepth | Mistake::FromPlane(Length::Depth))
+        };
+        let (a, b) = (&self.mistake, &other.mistake);
+        kind(a) != 0 && kind(a) == kind(b)
+            || is_length(a) && is_length(b)
+            || is_line(a) && is_of_depth(b)
+            || is_of_depth(a) && is_line(b)
     }
 
     /// Whether it says something of all lengths: then it must be true of each.
