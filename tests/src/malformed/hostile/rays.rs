@@ -146,9 +146,9 @@ fn is_good(name: &str) -> bool {
             Some(_) => ["half", "two-to-63", "two-to-64", "overflow", "long"].contains(&what),
         };
     }
-    // A CSV of one row; a ray without a dimension; the smallest number of all is one.
+    // A CSV of one row; a ray without a dimension; the smallest number of all is one, though no direction has that length.
     ["csv-cut-at-46", "npy-shape-2", "npy-number-7-inf"].contains(&name)
-        || name.starts_with("npy-number") && name.ends_with("tiny")
+        || name.starts_with("npy-number") && name.ends_with("tiny") && name != "npy-number-5-tiny"
         || name.ends_with("unchanged")
         || GOOD_SETS.contains(&name)
 }
