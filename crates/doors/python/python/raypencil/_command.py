@@ -39,6 +39,9 @@ def _parser() -> argparse.ArgumentParser:
             command.add_argument("--candidate-command")
             command.add_argument("--timeout", type=float, metavar="SECONDS")
             command.add_argument("--partial", action="store_true")
+            command.add_argument("--arithmetic", choices=("f64", "f32"))
+            command.add_argument("--parts", type=lambda words: words.split(","), metavar="PART,...")
+            command.add_argument("--max-faces", type=int, metavar="N")
         else:
             command.add_argument("scene", nargs="?", default="pyramids")
             command.add_argument("--set", action="append", default=[], metavar="KEY=VALUES")
@@ -65,7 +68,8 @@ def _on_cluster(words: list[str]) -> int:
             if given.command == "campaign":
                 found = campaign(
                     given.terrains, given.seed, output=given.output, scenes=given.scenes, rig=given.rig,
-                    candidate_command=given.candidate_command, timeout=given.timeout, partial=given.partial, shards=given.shards,
+                    candidate_command=given.candidate_command, timeout=given.timeout, partial=given.partial,
+                    arithmetic=given.arithmetic, parts=given.parts, max_faces=given.max_faces, shards=given.shards,
                     client=client, progress=True,
                 )  # fmt: skip
             else:

@@ -67,7 +67,7 @@ fn points_of(answers: &Answers, set: &NamedRaySet, frame: CloudFrame) -> (String
 }
 
 #[test]
-fn without_elevations_the_ring_is_the_index_in_the_second_dimension() {
+fn the_ring_is_the_index_in_the_second_dimension() {
     assert_eq!(rings(&[4]), [0; 4]);
     assert_eq!(rings(&[2, 3]), [0, 1, 2, 0, 1, 2]);
     // Of a third dimension four rays each are in one ring.

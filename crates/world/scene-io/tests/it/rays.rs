@@ -351,7 +351,9 @@ fn poses_of_a_file_are_those_of_the_list() {
         // As many as a TOML file cannot hold.
         std::fs::write(folder.path().join(name), trajectory(20_000, blank)).unwrap();
         let long = read(&format!("poses_file = \"{name}\"\n")).unwrap();
-        assert_eq!(long.sets, of_list.sets, "{name}");
+        // Its further poses change no ray.
+        let [long_set, set] = [&long, &of_list].map(|one| &one.sets[0]);
+        assert!(long_set.set == set.set && long_set.times == set.times, "{name}");
         assert_ne!(long.sha256, of_file.sha256);
     }
     let refused = |more: &str| read(more).unwrap_err();
