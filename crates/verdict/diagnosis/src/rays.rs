@@ -213,15 +213,20 @@ impl<'t> CastTrial<'t> {
             None => near_truth(&chosen) as f64 <= MAX_SHARE_NEAR_TRUTH * self.wrong.len() as f64,
         };
         // Rays through other places are known by what they meet: to miss everything, nearly any will do.
-        let is_met = rules.numbers == Numbers::SCENE || self.stated_hits() >= MIN_WRONG_RAYS;
+        let is_met = rules.numbers == Numbers::SCENE || self.stated_hits(&chosen) >= MIN_WRONG_RAYS;
         (is_new && is_met && tally.is_enough(MIN_WRONG_RAYS, self.all)).then_some(tally)
     }
 
-    /// Wrong rays of which the recording says that they meet something.
-    fn stated_hits(&self) -> u64 {
+    /// Wrong rays of which the recording says that they meet something, after the correction that was chosen for each channel.
+    fn stated_hits(&self, chosen: &[Option<&Correction>]) -> u64 {
         let says_hit = |place: &&Place| {
-            let own = self.channels.iter().filter(|channel| channel.sensor == place.sensor);
-            own.clone().any(|channel| channel.at(&self.case.recorded.answers, **place) != Value::Nothing)
+            self.channels.iter().zip(chosen).filter(|(channel, _)| channel.sensor == place.sensor).any(
+                |(channel, one)| {
+                    let corrections: Vec<&Correction> = one.iter().copied().collect();
+                    let value = corrected(self.case, *channel, **place, &corrections);
+                    value.is_some_and(|value| value != Value::Nothing)
+                },
+            )
         };
         self.wrong.iter().filter(says_hit).count() as u64
     }

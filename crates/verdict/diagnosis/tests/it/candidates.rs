@@ -310,3 +310,18 @@ pub fn missed(candidate: &mut Recorded, number: f64) {
         }
     }
 }
+
+/// A small face 2 m before the middle of each of 8 x 8 pixels: rays through other places of the cells meet nothing.
+pub fn dots() -> Bench {
+    let place = |cell: u32| 0.25 * (f64::from(cell) - 3.5);
+    let cells = (0..8).flat_map(|j| (0..8).map(move |i| [place(i), place(j)]));
+    let face =
+        |[x, y]: [f64; 2]| [[0.0, -0.01], [-0.01, 0.01], [0.01, 0.01]].map(|[dx, dy]| [x + dx, y + dy, 2.0]);
+    let corners: Vec<[f32; 3]> = cells.flat_map(face).map(|corner| corner.map(|x| x as f32)).collect();
+    let faces: Vec<[u32; 3]> = (0..64).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    let plaster = Material { name: "plaster".into(), reflectivity: 0.5 };
+    let mesh = Mesh::new(DVec3::ZERO, corners, faces, vec![0; 64], vec![plaster]).unwrap();
+    let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: rig::camera(8, 8, 0.0625, 0.5) };
+    let air = Atmosphere { attenuation: 0.0 };
+    Bench::of(Scene::new(Arc::new(mesh), camera, vec![], air, FluxModel::Radiometric).unwrap())
+}
