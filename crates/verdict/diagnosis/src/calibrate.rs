@@ -45,7 +45,10 @@ enum Parameter {
     OffsetX,
     OffsetY,
     Focal,
+    PitchX,
+    PitchY,
     Fan,
+    Thickness,
     TurnX,
     TurnY,
     TurnZ,
@@ -54,14 +57,16 @@ enum Parameter {
     ShiftZ,
 }
 
-use Parameter::{Fan, Focal, OffsetX, OffsetY, ShiftX, ShiftY, ShiftZ, TurnX, TurnY, TurnZ};
+use Parameter::{
+    Fan, Focal, OffsetX, OffsetY, PitchX, PitchY, ShiftX, ShiftY, ShiftZ, Thickness, TurnX, TurnY, TurnZ,
+};
 
 impl Parameter {
     /// A size at which rays change much: its thousandth is a step of a derivative.
     fn unit(self) -> f64 {
         match self {
-            OffsetX | OffsetY => 1.0,
-            Focal | Fan | TurnX | TurnY | TurnZ | ShiftX | ShiftY | ShiftZ => 1e-2,
+            OffsetX | OffsetY | Thickness => 1.0,
+            Focal | PitchX | PitchY | Fan | TurnX | TurnY | TurnZ | ShiftX | ShiftY | ShiftZ => 1e-2,
         }
     }
 
@@ -70,7 +75,10 @@ impl Parameter {
             OffsetX => &mut numbers.offset[0],
             OffsetY => &mut numbers.offset[1],
             Focal => &mut numbers.focal,
+            PitchX => &mut numbers.pitch[0],
+            PitchY => &mut numbers.pitch[1],
             Fan => &mut numbers.fan,
+            Thickness => &mut numbers.thickness,
             TurnX => &mut numbers.turn.x,
             TurnY => &mut numbers.turn.y,
             TurnZ => &mut numbers.turn.z,
@@ -84,8 +92,8 @@ impl Parameter {
 /// The sets of numbers that are tried for a sensor, the plainest first.
 fn models(sensor: SensorId) -> Vec<Vec<Parameter>> {
     let own: &[&[Parameter]] = match sensor {
-        SensorId::Camera => &[&[OffsetX], &[OffsetY], &[Focal]],
-        SensorId::Beam(_) => &[&[OffsetX], &[OffsetY], &[Fan]],
+        SensorId::Camera => &[&[OffsetX], &[OffsetY], &[Focal], &[PitchX], &[PitchY], &[PitchX, PitchY]],
+        SensorId::Beam(_) => &[&[OffsetX], &[OffsetY], &[Fan], &[Thickness]],
     };
     let pose: [&[Parameter]; 10] = [
         &[TurnX],
@@ -179,6 +187,9 @@ fn is_small(scene: &Scene, sensor: SensorId, numbers: &Numbers) -> bool {
         && dy.abs() <= MAX_OFFSET_SHARE * f64::from(height)
         && is_factor(numbers.focal)
         && is_factor(numbers.fan)
+        && numbers.pitch.iter().all(|one| is_factor(*one))
+        // A beam may be taken for a plane: then the factor is 0 up to rounding.
+        && (-1e-6..=MAX_FACTOR).contains(&numbers.thickness)
         && numbers.turn.length() <= MAX_TURN
         && numbers.shift.length() <= MAX_SHIFT
 }
@@ -342,6 +353,24 @@ fn told(scene: &Scene, sensor: SensorId, fit: &Fit) -> Option<(Mistake, Rules)> 
             let stated = plainest(1e3 * truth * factor, 1e3 * truth * uncertainty) / 1e3;
             numbers.focal = stated / truth;
             Mistake::FocalLength { stated, truth }
+        }
+        [PitchX | PitchY, ..] => {
+            let truth = scene.camera().sensor.pixel_pitch;
+            let mut stated = truth;
+            for (k, parameter) in [PitchX, PitchY].into_iter().enumerate() {
+                let Some((factor, uncertainty)) = off(parameter) else { continue };
+                stated[k] = plainest(1e6 * truth[k] * factor, 1e6 * truth[k] * uncertainty) / 1e6;
+                numbers.pitch[k] = stated[k] / truth[k];
+            }
+            Mistake::PixelPitch { stated, truth }
+        }
+        [Thickness] => {
+            let SensorId::Beam(beam) = sensor else { return None };
+            let truth = scene.beams()[beam].sensor.thickness;
+            let (factor, uncertainty) = off(Thickness)?;
+            let stated = plainest(1e3 * truth * factor, 1e3 * truth * uncertainty) / 1e3;
+            numbers.thickness = stated / truth;
+            Mistake::Thickness { stated, truth }
         }
         [Fan] => {
             let SensorId::Beam(beam) = sensor else { return None };

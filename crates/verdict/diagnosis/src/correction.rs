@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::case::Case;
 use crate::channel::{Channel, Value, hit_quantity};
 use crate::forward::foretold;
-use crate::mistake::{Cosine, Length, Mistake};
+use crate::mistake::{Cosine, Length, Mistake, Vectors};
 use glam::DVec3;
 use raypencil_judge::{Item, Quantity};
 use raypencil_scene::{FaceId, HitQuantity, Image, Pixel, Place, SensorId};
@@ -58,9 +58,12 @@ impl Correction {
             Mistake::Unit(_) => {
                 matches!(hit, Some(H::Range | H::Depth | H::Point)) || quantity == Quantity::CameraDepth
             }
-            Mistake::AxesYUp | Mistake::AxesYUpInverse | Mistake::Axes { .. } | Mistake::SensorFrame => {
-                matches!(hit, Some(H::Point | H::Normal))
-            }
+            Mistake::AxesYUp
+            | Mistake::AxesYUpInverse
+            | Mistake::Axes { of: Vectors::Both, .. }
+            | Mistake::SensorFrame => matches!(hit, Some(H::Point | H::Normal)),
+            Mistake::Axes { of: Vectors::Points, .. } => hit == Some(H::Point),
+            Mistake::Axes { of: Vectors::Normals, .. } => hit == Some(H::Normal),
             Mistake::GlobalFrame => hit == Some(H::Point),
             Mistake::NormalsReversed | Mistake::NormalsNotUnit => hit == Some(H::Normal),
             Mistake::CosinesNegated | Mistake::AngleForCosine(_) => is_cosine,
@@ -70,11 +73,27 @@ impl Correction {
             Mistake::Affine { of: Length::All, offset: 0.0, .. } => {
                 matches!(hit, Some(H::Range | H::Depth | H::Point)) || quantity == Quantity::CameraDepth
             }
-            Mistake::Affine { of, .. } | Mistake::FromPlane(of) | Mistake::Rounded { of, .. } => match of {
+            // Depths in the camera are depths, too.
+            Mistake::Rounded { of: Length::Depth | Length::All, .. }
+            | Mistake::LengthsNegated(Length::Depth | Length::All)
+            | Mistake::Inverse(Length::Depth | Length::All)
+                if quantity == Quantity::CameraDepth =>
+            {
+                true
+            }
+            Mistake::Affine { of, .. }
+            | Mistake::FromPlane(of)
+            | Mistake::Rounded { of, .. }
+            | Mistake::LengthsNegated(of)
+            | Mistake::Inverse(of) => match of {
                 Length::Range => hit == Some(H::Range),
                 Length::Depth => hit == Some(H::Depth),
                 Length::All => matches!(hit, Some(H::Range | H::Depth)),
             },
+            Mistake::HoldsBeam(_) => channel.sensor != SensorId::Camera,
+            Mistake::BeamFluxExchanged => channel.sensor == SensorId::Camera && is_flux,
+            Mistake::VisibleReversed => quantity == Quantity::Visible,
+            Mistake::NoShadowTest => matches!(quantity, Quantity::Visible | Quantity::PencilFlux),
             Mistake::Cut { .. } => true,
             _ => false,
         }
@@ -87,6 +106,7 @@ impl Correction {
             Mistake::FacesShifted(_) | Mistake::FacesReordered => 2,
             Mistake::DepthForRange | Mistake::ParameterForRange | Mistake::FromPlane(Length::Range) => 3,
             Mistake::RangeForDepth | Mistake::ParameterForDepth | Mistake::FromPlane(Length::Depth) => 4,
+            Mistake::VisibleReversed | Mistake::NoShadowTest => 12,
             Mistake::Unit(_) => 5,
             Mistake::AxesYUp
             | Mistake::AxesYUpInverse
@@ -121,6 +141,8 @@ impl Correction {
             Mistake::Affine { of: Length::All, .. }
                 | Mistake::FromPlane(Length::All)
                 | Mistake::Rounded { of: Length::All, .. }
+                | Mistake::LengthsNegated(Length::All)
+                | Mistake::Inverse(Length::All)
         )
     }
 
@@ -157,10 +179,16 @@ impl Correction {
         if let Mistake::MissWritten(_) | Mistake::MissAtMaximumRange = self.mistake {
             return if self.is_miss(case, source) { Value::Nothing } else { value };
         }
-        if let Mistake::Rounded { .. } | Mistake::Cut { .. } = self.mistake {
+        if let Mistake::Rounded { .. }
+        | Mistake::Cut { .. }
+        | Mistake::HoldsBeam(_)
+        | Mistake::BeamFluxExchanged
+        | Mistake::NoShadowTest = self.mistake
+        {
             return foretold(self.mistake, case, channel, place, value);
         }
         match value {
+            Value::Flag(flag) if self.mistake == Mistake::VisibleReversed => Value::Flag(!flag),
             Value::Nothing | Value::Flag(_) => value,
             Value::Number(number) => Value::Number(self.number(case, channel, place, number)),
             Value::Vector(vector) => Value::Vector(self.vector(case, channel, vector)),
@@ -203,7 +231,8 @@ impl Correction {
             Mistake::Affine { factor, offset, .. } => (number - offset) / factor,
             Mistake::FromPlane(_) if channel.item.quantity == Quantity::Range => number + length(),
             Mistake::FromPlane(_) => number + axis,
-            Mistake::CosinesNegated => -number,
+            Mistake::CosinesNegated | Mistake::LengthsNegated(_) => -number,
+            Mistake::Inverse(_) => 1.0 / number,
             Mistake::AngleForCosine(unit) => unit.cosine(number),
             Mistake::CosinesExchanged(held) => {
                 let quantities = [Quantity::CosIncidence, Quantity::CosOffAxis, Quantity::CosView];
@@ -254,7 +283,7 @@ impl Correction {
             Mistake::Affine { factor, .. } => vector / factor,
             Mistake::AxesYUp => turned([0, 2, 1], [1, -1, 1]),
             Mistake::AxesYUpInverse => turned([0, 2, 1], [1, 1, -1]),
-            Mistake::Axes { from, sign } => turned(from, sign),
+            Mistake::Axes { from, sign, .. } => turned(from, sign),
             Mistake::SensorFrame => {
                 let pose = match channel.sensor {
                     SensorId::Camera => scene.camera().scene_from_sensor,

@@ -3,6 +3,7 @@
 use crate::agree::tolerance_of;
 use crate::case::Case;
 use crate::diagnosis::{Diagnosis, Reason};
+use crate::image::explained_by_pencils;
 use crate::landing::explained_by_camera;
 use crate::mistake::Mistake;
 use crate::rules::Numbers;
@@ -59,6 +60,17 @@ pub fn diagnose(truth: &GroundTruth<'_>, recorded: &Recorded, check: &Check) -> 
             open.retain(|sensor| *sensor != beam);
             found.push((vec![beam], Finding { tally, ..of_camera.clone() }));
         }
+    }
+    // An image is as wrong as the pencils that it is the sum of.
+    if open.contains(&SensorId::Camera)
+        && let Some(tally) = explained_by_pencils(truth, recorded, check)
+    {
+        open.retain(|sensor| *sensor != SensorId::Camera);
+        let mistakes = vec![Mistake::FluxOfWrongPencils];
+        found.push((
+            vec![SensorId::Camera],
+            Finding { mistakes, corrections: Vec::new(), rules: None, tally },
+        ));
     }
     // Rays of several sensors together say what those of each do not. A pair of mistakes might be one of each.
     if open.len() > 1

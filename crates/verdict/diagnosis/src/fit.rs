@@ -8,7 +8,7 @@ use crate::case::Case;
 use crate::channel::{Channel, Value};
 use crate::correction::{Correction, FluxFactors, Table, corrected};
 use crate::lengths::lengths;
-use crate::mistake::{AngleUnit, Cosine, Leg, Length, LengthUnit, Mistake};
+use crate::mistake::{AngleUnit, Cosine, Leg, Length, LengthUnit, Mistake, Vectors};
 use crate::numbers::{middle, plainest};
 use raypencil_judge::Quantity;
 use raypencil_scene::{FluxModel, HitQuantity, Image, Place, SensorId};
@@ -54,6 +54,12 @@ pub(crate) fn fixed(case: Case<'_>) -> Vec<Correction> {
         Mistake::Unit(LengthUnit::Centimetres),
         Mistake::Unit(LengthUnit::Kilometres),
         Mistake::Unit(LengthUnit::Feet),
+        Mistake::LengthsNegated(Length::All),
+        Mistake::LengthsNegated(Length::Range),
+        Mistake::LengthsNegated(Length::Depth),
+        Mistake::Inverse(Length::All),
+        Mistake::Inverse(Length::Range),
+        Mistake::Inverse(Length::Depth),
         Mistake::SensorFrame,
         Mistake::NormalsReversed,
         Mistake::NormalsNotUnit,
@@ -63,7 +69,10 @@ pub(crate) fn fixed(case: Case<'_>) -> Vec<Correction> {
         Mistake::PixelRowsFromBottom,
         Mistake::PixelsExchanged,
         Mistake::OtherFluxModel,
+        Mistake::VisibleReversed,
+        Mistake::NoShadowTest,
     ]);
+    mistakes.extend(other_beams(case));
     if scene.mesh().origin() != glam::DVec3::ZERO {
         mistakes.push(Mistake::GlobalFrame);
     }
@@ -96,10 +105,26 @@ pub(crate) fn fixed(case: Case<'_>) -> Vec<Correction> {
     corrections
 }
 
+/// The beams whose answers the sensor that is asked about may hold: those with as many cells.
+fn other_beams(case: Case<'_>) -> Vec<Mistake> {
+    let scene = case.truth.scene();
+    let beams = scene.beams().len();
+    match *case.sensors {
+        [SensorId::Camera] if beams == 2 => vec![Mistake::BeamFluxExchanged],
+        [SensorId::Beam(own)] => {
+            let is_alike =
+                |beam: &usize| scene.size(SensorId::Beam(*beam)) == scene.size(SensorId::Beam(own));
+            (0..beams).filter(|beam| *beam != own).filter(is_alike).map(Mistake::HoldsBeam).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
 /// Corrections whose numbers are found from the recording, after `base`.
 pub(crate) fn fitted(case: Case<'_>, places: &[Place], base: Option<&Correction>) -> Vec<Correction> {
-    let turns = [axes(case, places, base), faces(case, base), factor(case, places, base)];
-    turns.into_iter().flatten().chain(lengths(case, places, base)).collect()
+    let turns =
+        axes(case, places, base).into_iter().chain(faces(case, base)).chain(factor(case, places, base));
+    turns.chain(lengths(case, places, base)).collect()
 }
 
 /// All rays of a sensor, or every so many of them.
@@ -151,16 +176,16 @@ fn constants(case: Case<'_>) -> Vec<Mistake> {
     found
 }
 
-/// A change of axes for points and normals.
-fn axes(case: Case<'_>, places: &[Place], base: Option<&Correction>) -> Option<Correction> {
-    let channels: Vec<Channel> = case
-        .channels()
-        .into_iter()
-        .filter(|channel| matches!(channel.item.quantity, Quantity::Point | Quantity::Normal))
-        .collect();
-    let corrections: Vec<&Correction> = base.into_iter().collect();
-    let off = |turn: Option<&Correction>| -> usize {
-        let chain: Vec<&Correction> = corrections.iter().copied().chain(turn).collect();
+/// A change of axes of points and normals; where none helps both, one of each.
+fn axes(case: Case<'_>, places: &[Place], base: Option<&Correction>) -> Vec<Correction> {
+    let of = |quantity: Quantity| -> Vec<Channel> {
+        case.channels().into_iter().filter(|channel| channel.item.quantity == quantity).collect()
+    };
+    let (points, normals) = (of(Quantity::Point), of(Quantity::Normal));
+    let both: Vec<Channel> = points.iter().chain(&normals).copied().collect();
+    let off = |channels: &[Channel], turn: Option<Mistake>| -> usize {
+        let turn = turn.map(Correction::from);
+        let chain: Vec<&Correction> = base.into_iter().chain(&turn).collect();
         let of_channel = |channel: &Channel| {
             let own = places.iter().filter(|place| place.sensor == channel.sensor);
             own.filter(|place| {
@@ -176,18 +201,43 @@ fn axes(case: Case<'_>, places: &[Place], base: Option<&Correction>) -> Option<C
     for from in [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]] {
         for signs in 0..8_u8 {
             let sign = [0, 1, 2].map(|k| if signs >> k & 1 == 1 { -1 } else { 1 });
-            turns.push(Mistake::Axes { from, sign });
+            // That of all is no change, and that of reversed normals has a name of its own.
+            if from != [0, 1, 2] || sign[0] != sign[1] || sign[1] != sign[2] {
+                turns.push(Mistake::Axes { of: Vectors::Both, from, sign });
+            }
         }
     }
-    // That of all is no change, and that of reversed normals has a name of its own.
-    turns.retain(|turn| {
-        let plain = [0, 1, 2];
-        !matches!(turn, Mistake::Axes { from, sign } if *from == plain && sign[0] == sign[1] && sign[1] == sign[2])
-    });
-    let own = off(None);
-    let best = turns.into_iter().map(Correction::from).map(|turn| (off(Some(&turn)), turn));
-    let (left, turn) = best.min_by_key(|(left, _)| *left)?;
-    (left < own).then_some(turn)
+    // The turn that leaves the fewest off, and whether another leaves as few: then nobody knows which it is.
+    let best = |channels: &[Channel]| -> Option<(Mistake, bool)> {
+        let left: Vec<(usize, Mistake)> =
+            turns.iter().map(|turn| (off(channels, Some(*turn)), *turn)).collect();
+        let (fewest, turn) = *left.iter().min_by_key(|(left, _)| *left)?;
+        let as_few =
+            left.iter().filter(|(left, other)| *left == fewest && plain(*other) != plain(turn)).count();
+        (fewest < off(channels, None)).then_some((turn, as_few == 0))
+    };
+    let helps = |turn: Mistake, channels: &[Channel]| {
+        channels.is_empty() || off(channels, Some(turn)) < off(channels, None)
+    };
+    if let Some((turn, _)) = best(&both).filter(|(turn, _)| helps(*turn, &points) && helps(*turn, &normals)) {
+        return vec![turn.into()];
+    }
+    let alone = |(of, channels): (Vectors, &Vec<Channel>)| {
+        let (turn, _) = best(channels).filter(|(_, is_only)| *is_only)?;
+        let (from, sign) = plain(turn)?;
+        Some(Correction::from(Mistake::Axes { of, from, sign }))
+    };
+    [(Vectors::Points, &points), (Vectors::Normals, &normals)].into_iter().filter_map(alone).collect()
+}
+
+/// A change of axes as components and signs.
+fn plain(turn: Mistake) -> Option<([usize; 3], [i8; 3])> {
+    match turn {
+        Mistake::AxesYUp => Some(([0, 2, 1], [1, -1, 1])),
+        Mistake::AxesYUpInverse => Some(([0, 2, 1], [1, 1, -1])),
+        Mistake::Axes { from, sign, .. } => Some((from, sign)),
+        _ => None,
+    }
 }
 
 /// The true face of each stated index, if each stands for one.

@@ -1,12 +1,13 @@
 //! Mistakes that nothing undoes, since a number was rounded or lost: what they make of the exact value is compared with what is
 //! stated.
 
+use crate::agree::is_near;
 use crate::case::Case;
 use crate::channel::{Channel, Value};
 use crate::mistake::{CutBy, Held, Mistake};
 use raypencil_files::Storage;
-use raypencil_judge::Quantity;
-use raypencil_scene::Place;
+use raypencil_judge::{Item, Quantity};
+use raypencil_scene::{Place, SensorId};
 
 /// Relative error allowed to a few operations of doubles.
 const FEW_ROUNDINGS: f64 = 8.0 * f64::EPSILON;
@@ -41,6 +42,27 @@ pub(crate) fn foretold(
             }
             holds(case, channel, place, stated, (by, is_above, held))
         }
+        Mistake::HoldsBeam(beam) => {
+            let sensor = SensorId::Beam(beam);
+            let other = Channel { sensor, ..channel };
+            let other = other.at(case.truth.answers(), Place { sensor, ..place });
+            is_near(case, channel, place, stated, other)
+        }
+        Mistake::BeamFluxExchanged => {
+            let item = Item { beam: channel.item.beam.map(|beam| 1 - beam.min(1)), ..channel.item };
+            let other = Channel { item, ..channel }.at(case.truth.answers(), place);
+            is_near(case, channel, place, stated, other)
+        }
+        Mistake::NoShadowTest => {
+            let is_hidden = would_be_seen(case, place) && !case.truth.visibility(place).0;
+            match (stated, is_hidden) {
+                (_, false) => return stated,
+                // A hit that is hidden, and said to be, speaks against it.
+                (Value::Flag(is_visible), true) => is_visible,
+                (Value::Number(flux), true) => flux >= 0.0,
+                _ => false,
+            }
+        }
         _ => return stated,
     };
     match (is_foretold, exact) {
@@ -48,6 +70,20 @@ pub(crate) fn foretold(
         (false, Value::Flag(flag)) => Value::Flag(!flag),
         (false, _) => Value::Number(f64::NAN),
     }
+}
+
+/// Whether the camera would see a hit if no face lay between them: its front is turned to the camera, it is deeper than the
+/// camera's plane, and it lands on a pixel.
+fn would_be_seen(case: Case<'_>, place: Place) -> bool {
+    let of = |quantity: Quantity| {
+        let channel = Channel { sensor: place.sensor, item: quantity.into() };
+        channel.at(case.truth.answers(), place)
+    };
+    let is_more =
+        |quantity: Quantity, least: f64| matches!(of(quantity), Value::Number(number) if number > least);
+    is_more(Quantity::CosView, 0.0)
+        && is_more(Quantity::CameraDepth, case.truth.scene().camera().sensor.focal_length)
+        && case.truth.visibility(place).1.is_some()
 }
 
 /// The number of a ray by which a recording may be cut; `None` without a hit.

@@ -49,11 +49,15 @@ pub(crate) fn explained_by_camera(
 /// The scene with the camera that has these numbers; `None`: no scene can have it.
 fn with_camera(scene: &Scene, numbers: &Numbers) -> Option<Scene> {
     let Mounted { scene_from_sensor: pose, sensor: camera } = *scene.camera();
-    let Numbers { offset: [dx, dy], focal, turn, shift, .. } = *numbers;
-    let [cx, cy] = camera.principal_point;
+    let Numbers { offset: [dx, dy], focal, pitch, turn, shift, .. } = *numbers;
+    let ([cx, cy], [px, py]) = (camera.principal_point, camera.pixel_pitch);
     // A ray through another point of its pixel is the ray of a camera with another principal point.
-    let sensor =
-        Camera { principal_point: [cx - dx, cy - dy], focal_length: camera.focal_length * focal, ..camera };
+    let sensor = Camera {
+        principal_point: [cx - dx, cy - dy],
+        pixel_pitch: [px * pitch[0], py * pitch[1]],
+        focal_length: camera.focal_length * focal,
+        ..camera
+    };
     let angle = turn.length();
     let rotation = match angle == 0.0 {
         true => pose.rotation,

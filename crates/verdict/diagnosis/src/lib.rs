@@ -64,6 +64,7 @@
 //! cuts           lost lines and lost lengths, by an interval search
 //! fit            the corrections to try, and numbers found from the recording
 //! judged         a corrected recording before the judge
+//! image          the camera's image as the sum of wrong pencils
 //! landing        what another camera does to the light of beams
 //! rules          rules and numbers of rays that may differ
 //! cast           rays cast by other rules
@@ -85,6 +86,7 @@ mod diagnose;
 mod diagnosis;
 mod fit;
 mod forward;
+mod image;
 mod judged;
 mod landing;
 mod lengths;
@@ -105,4 +107,4 @@ struct Readme;
 
 pub use diagnose::diagnose;
 pub use diagnosis::{Diagnosis, Reason};
-pub use mistake::{AngleUnit, Cosine, CutBy, Held, Leg, Length, LengthUnit, Mistake, Turn};
+pub use mistake::{AngleUnit, Cosine, CutBy, Held, Leg, Length, LengthUnit, Mistake, Turn, Vectors};

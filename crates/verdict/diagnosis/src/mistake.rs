@@ -97,6 +97,17 @@ pub enum Length {
     All,
 }
 
+/// Vectors of a hit that a mistake may change.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Vectors {
+    /// Hit points alone.
+    Points,
+    /// Normals alone.
+    Normals,
+    /// Both.
+    Both,
+}
+
 /// What a recording is cut by: the number of a ray that decides whether its answer is lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CutBy {
@@ -176,6 +187,8 @@ pub enum Mistake {
     /// Points and normals are in other axes. Component k of the scene is `sign` times component `from` of the
     /// recording.
     Axes {
+        /// Of which vectors.
+        of: Vectors,
         /// Component of the recording, for x, y and z.
         from: [usize; 3],
         /// 1 or -1, for x, y and z.
@@ -185,6 +198,20 @@ pub enum Mistake {
     SensorFrame,
     /// Points are in the global frame: the scene origin is added.
     GlobalFrame,
+    /// Lengths are negative where they should be positive.
+    LengthsNegated(Length),
+    /// A length is one over the true one.
+    Inverse(Length),
+    /// A beam's cells hold what is true of the beam with this index.
+    HoldsBeam(usize),
+    /// `flux.beam0` and `flux.beam1` are exchanged.
+    BeamFluxExchanged,
+    /// `visible.V` is 1 where it should be 0.
+    VisibleReversed,
+    /// No face hides a hit from the camera.
+    NoShadowTest,
+    /// The camera's flux is the sum of what the pencils of the recording state, and these are wrong.
+    FluxOfWrongPencils,
     /// Normals point inward.
     NormalsReversed,
     /// Normals are not unit vectors.
@@ -274,6 +301,24 @@ pub enum Mistake {
         /// The scene's.
         truth: f64,
     },
+    /// The camera's pixels have another pitch.
+    PixelPitch {
+        /// The one of the recording's rays, across and down, metres.
+        stated: [f64; 2],
+        /// The scene's.
+        truth: [f64; 2],
+    },
+    /// The beam has another thickness: its rows start at other places.
+    Thickness {
+        /// The one of the recording's rays, metres.
+        stated: f64,
+        /// The scene's.
+        truth: f64,
+    },
+    /// The sensor's pose is used the wrong way round: as that of the scene in the sensor's frame.
+    PoseInverted,
+    /// The four numbers of the sensor's rotation are read in the order w, x, y, z.
+    QuaternionOrder,
     /// The beam's fan has another angle.
     Fan {
         /// The one of the recording's rays, degrees.
@@ -329,6 +374,13 @@ impl Mistake {
             Self::Axes { .. } => "axes",
             Self::SensorFrame => "sensor_frame",
             Self::GlobalFrame => "global_frame",
+            Self::LengthsNegated(_) => "lengths_negated",
+            Self::Inverse(_) => "inverse",
+            Self::HoldsBeam(_) => "other_beam",
+            Self::BeamFluxExchanged => "beam_flux_exchanged",
+            Self::VisibleReversed => "visible_reversed",
+            Self::NoShadowTest => "no_shadow_test",
+            Self::FluxOfWrongPencils => "flux_of_wrong_pencils",
             Self::NormalsReversed => "normals_reversed",
             Self::NormalsNotUnit => "normals_not_unit",
             Self::CosinesNegated => "cosines_negated",
@@ -365,6 +417,10 @@ impl Mistake {
             Self::Cut { .. } => "cut_off",
             Self::PrincipalPoint { .. } => "principal_point",
             Self::FocalLength { .. } => "focal_length",
+            Self::PixelPitch { .. } => "pixel_pitch",
+            Self::Thickness { .. } => "thickness",
+            Self::PoseInverted => "pose_inverted",
+            Self::QuaternionOrder => "quaternion_order",
             Self::Fan { .. } => "fan",
             Self::Turned { about: Turn::Pitch, .. } => "pitch",
             Self::Turned { about: Turn::Yaw, .. } => "yaw",
@@ -396,7 +452,12 @@ impl Mistake {
             | Self::AngleForCosine(_)
             | Self::CosinesExchanged(_)
             | Self::PixelRowsFromBottom
-            | Self::PixelsExchanged => (FILES, "Maps: OpenEXR"),
+            | Self::PixelsExchanged
+            | Self::LengthsNegated(_)
+            | Self::HoldsBeam(_)
+            | Self::BeamFluxExchanged
+            | Self::VisibleReversed => (FILES, "Maps: OpenEXR"),
+            Self::NoShadowTest | Self::FluxOfWrongPencils => (LIGHT, "Pixel and visibility"),
             Self::OtherFluxModel | Self::AttenuationOn(_) | Self::FluxFactor(_) => (LIGHT, "radiometric"),
             Self::SinglePrecision => (GUIDE, "raypencil check"),
             Self::BacksHit | Self::NearPlaneIgnored | Self::MaximumRangeIgnored => {
@@ -406,10 +467,16 @@ impl Mistake {
                 (GUIDE, "The contract for rays")
             }
             Self::CornerRays { .. } => (FILES, "Cells"),
-            Self::Affine { .. } | Self::FromPlane(_) | Self::Rounded { .. } => (REASONS, "Lengths"),
+            Self::Affine { .. } | Self::FromPlane(_) | Self::Rounded { .. } | Self::Inverse(_) => {
+                (REASONS, "Lengths")
+            }
             Self::Cut { .. } => (REASONS, "Cuts and borders"),
             Self::PrincipalPoint { .. }
             | Self::FocalLength { .. }
+            | Self::PixelPitch { .. }
+            | Self::Thickness { .. }
+            | Self::PoseInverted
+            | Self::QuaternionOrder
             | Self::Fan { .. }
             | Self::Turned { .. }
             | Self::Moved(_)

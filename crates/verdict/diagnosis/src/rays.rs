@@ -13,7 +13,7 @@ use crate::correction::{Correction, corrected};
 use crate::cuts::{hits, split};
 use crate::mistake::Mistake;
 use crate::numbers::plainest_between;
-use crate::rules::{Numbers, Rules, near_limit, pairs_of_wrong_rules, wrong_rules};
+use crate::rules::{Numbers, Rules, near_limit, pairs_of_wrong_rules, wrong_poses, wrong_rules};
 use crate::sample::{WrongRays, key, some_of, spread_over};
 use crate::tally::{MIN_WRONG_RAYS, Tally};
 use raypencil_judge::Quantity;
@@ -95,6 +95,9 @@ impl<'t> CastTrial<'t> {
         if wrong.len() as u64 >= MIN_WRONG_RAYS {
             rules = wrong_rules();
             rules.extend(near_limit_of(case, wrong_rays));
+            if let [sensor] = *case.sensors {
+                rules.extend(wrong_poses(scene, sensor));
+            }
             rules.extend(calibrations(case, &wrong));
         }
         let first = rules.iter().map(|_| OnceLock::new()).collect();
@@ -168,6 +171,13 @@ impl<'t> CastTrial<'t> {
             chosen.push(better);
         }
         if correction.is_some() && chosen.iter().all(Option::is_none) {
+            return None;
+        }
+        // What is said of all lengths must be true of each.
+        let is_left_out = |(channel, chosen): (&Channel, &Option<&Correction>)| {
+            chosen.is_none() && correction.is_some_and(|one| one.is_of_all_lengths() && one.touches(*channel))
+        };
+        if self.channels.iter().zip(&chosen).any(is_left_out) {
             return None;
         }
         let near = |places: &[Place], render: &[Cast]| {

@@ -1,6 +1,6 @@
 //! Rules and numbers of a renderer's rays that may differ from the contract's and the scene's.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use raypencil_scene::{Place, Pose, Scene, SensorId};
 
 use crate::mistake::Mistake;
@@ -20,8 +20,12 @@ pub(crate) struct Numbers {
     pub(crate) offset: [f64; 2],
     /// Focal length or grid distance over the scene's.
     pub(crate) focal: f64,
+    /// Pixel pitch over the scene's, across and down.
+    pub(crate) pitch: [f64; 2],
     /// Half width of a beam's grid over the scene's.
     pub(crate) fan: f64,
+    /// Thickness of a beam over the scene's.
+    pub(crate) thickness: f64,
     /// Rotation vector in the sensor's frame, radians.
     pub(crate) turn: DVec3,
     /// In the scene frame, metres.
@@ -29,8 +33,15 @@ pub(crate) struct Numbers {
 }
 
 impl Numbers {
-    pub(crate) const SCENE: Self =
-        Self { offset: [0.0; 2], focal: 1.0, fan: 1.0, turn: DVec3::ZERO, shift: DVec3::ZERO };
+    pub(crate) const SCENE: Self = Self {
+        offset: [0.0; 2],
+        focal: 1.0,
+        pitch: [1.0; 2],
+        fan: 1.0,
+        thickness: 1.0,
+        turn: DVec3::ZERO,
+        shift: DVec3::ZERO,
+    };
 }
 
 /// Rules of a cast that may differ from the contract's.
@@ -107,6 +118,30 @@ pub(crate) fn wrong_rules() -> Vec<(Mistake, Rules)> {
     .collect()
 }
 
+/// The rules of a renderer that uses a sensor's pose otherwise than the scene states it; none where that changes nothing.
+pub(crate) fn wrong_poses(scene: &Scene, sensor: SensorId) -> Vec<(Mistake, Rules)> {
+    let own = match sensor {
+        SensorId::Camera => scene.camera().scene_from_sensor,
+        SensorId::Beam(beam) => scene.beams()[beam].scene_from_sensor,
+    };
+    let [x, y, z, w] = own.rotation.to_array();
+    let reordered = Pose { rotation: DQuat::from_xyzw(y, z, w, x), ..own };
+    let as_rules = |(mistake, pose): (Mistake, Pose)| {
+        let turn = rotation_vector(own.rotation.inverse() * pose.rotation);
+        let numbers = Numbers { turn, shift: pose.position - own.position, ..Numbers::SCENE };
+        (numbers != Numbers::SCENE).then_some((mistake, Rules { numbers, ..Rules::CONTRACT }))
+    };
+    let all = [(Mistake::PoseInverted, own.inverse()), (Mistake::QuaternionOrder, reordered)];
+    all.into_iter().filter_map(as_rules).collect()
+}
+
+/// The axis of a rotation times its angle, radians.
+fn rotation_vector(rotation: DQuat) -> DVec3 {
+    let vector = DVec3::new(rotation.x, rotation.y, rotation.z);
+    let sine = vector.length();
+    if sine == 0.0 { DVec3::ZERO } else { vector * (2.0 * libm::atan2(sine, rotation.w) / sine) }
+}
+
 /// The rules of a renderer in which a hit needs more than t = 1.
 pub(crate) fn near_limit(least: f64) -> Option<(Mistake, Rules)> {
     let mistake = Mistake::NearLimit(least);
@@ -145,7 +180,9 @@ pub(crate) fn ray(scene: &Scene, place: Place, numbers: &Numbers) -> Option<Sens
         SensorId::Camera => {
             let camera = scene.camera();
             let [px, py] = camera.sensor.pixel_pitch;
-            let direction = camera.sensor.direction(place.i, place.j) + DVec3::new(dx * px, dy * py, 0.0);
+            let mut direction = camera.sensor.direction(place.i, place.j) + DVec3::new(dx * px, dy * py, 0.0);
+            direction.x *= numbers.pitch[0];
+            direction.y *= numbers.pitch[1];
             (camera.scene_from_sensor, DVec3::ZERO, direction)
         }
         SensorId::Beam(beam) => {
@@ -154,7 +191,8 @@ pub(crate) fn ray(scene: &Scene, place: Place, numbers: &Numbers) -> Option<Sens
             let down = beam.sensor.thickness / f64::from(beam.sensor.rows);
             let mut direction = beam.sensor.direction(place.i) + DVec3::new(dx * across, 0.0, 0.0);
             direction.x *= numbers.fan;
-            let start = beam.sensor.origin(place.j) + DVec3::new(0.0, dy * down, 0.0);
+            let mut start = beam.sensor.origin(place.j) + DVec3::new(0.0, dy * down, 0.0);
+            start.y *= numbers.thickness;
             (beam.scene_from_sensor, start, direction)
         }
     };

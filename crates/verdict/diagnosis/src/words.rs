@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::mistake::{AngleUnit, Cosine, CutBy, Held, Leg, Length, LengthUnit, Mistake, Turn};
+use crate::mistake::{AngleUnit, Cosine, CutBy, Held, Leg, Length, LengthUnit, Mistake, Turn, Vectors};
 
 /// The mistake as a clause that follows "if", and the rule that it breaks.
 impl fmt::Display for Mistake {
@@ -67,8 +67,13 @@ impl fmt::Display for Mistake {
             Self::AxesYUpInverse => f.write_str(
                 "points and normals are in the axes (x, -z, y): the change from glTF's y up was made twice",
             ),
-            Self::Axes { from, sign } => {
-                f.write_str("points and normals are in other axes: the scene's (x, y, z) is their (")?;
+            Self::Axes { of, from, sign } => {
+                let what = match of {
+                    Vectors::Points => "points",
+                    Vectors::Normals => "normals",
+                    Vectors::Both => "points and normals",
+                };
+                write!(f, "{what} are in other axes: the scene's (x, y, z) is their (")?;
                 for k in 0..3 {
                     let comma = if k == 0 { "" } else { ", " };
                     let minus = if sign[k] < 0 { "-" } else { "" };
@@ -81,6 +86,27 @@ impl fmt::Display for Mistake {
             }
             Self::GlobalFrame => {
                 f.write_str("points are in the global frame: the scene frame starts at the scene origin")
+            }
+            Self::LengthsNegated(of) => {
+                let (subject, verb) = subject(*of);
+                write!(f, "{subject} {verb} negative: lengths are positive along the ray and the sensor's normal axis")
+            }
+            Self::Inverse(of) => {
+                let (subject, verb) = subject(*of);
+                write!(f, "{subject} {verb} 1 over the true length")
+            }
+            Self::HoldsBeam(beam) => write!(f, "the rays are those of beam-{beam}: beams are in the scene's order"),
+            Self::BeamFluxExchanged => {
+                f.write_str("flux.beam0 and flux.beam1 are exchanged: beams are in the scene's order")
+            }
+            Self::VisibleReversed => {
+                f.write_str("visible.V is 0 where it should be 1, and 1 where it should be 0: 1 means that the camera sees the hit")
+            }
+            Self::NoShadowTest => f.write_str(
+                "no face hides a hit from the camera: what lies between them hides it (a shadow test is missing)",
+            ),
+            Self::FluxOfWrongPencils => {
+                f.write_str("the pencils of the beams were right: the flux is the sum of what they state")
             }
             Self::NormalsReversed => f.write_str("normals point inward: a normal points to the outside"),
             Self::NormalsNotUnit => f.write_str("normals are not unit vectors: a normal has the length 1"),
@@ -191,6 +217,22 @@ impl fmt::Display for Mistake {
                 short(1e3 * stated),
                 short(1e3 * truth)
             ),
+            Self::PixelPitch { stated, truth } => {
+                let microns = |pitch: &[f64; 2]| pitch.map(|one| short(1e6 * one)).join(" x ");
+                write!(f, "the pixel pitch is {} in place of {} micrometres", microns(stated), microns(truth))
+            }
+            Self::Thickness { stated, truth } => write!(
+                f,
+                "the beam's thickness is {} in place of {} mm",
+                short(1e3 * stated),
+                short(1e3 * truth)
+            ),
+            Self::PoseInverted => {
+                f.write_str("the sensor's pose is inverted: it takes points of the sensor's frame to the scene's")
+            }
+            Self::QuaternionOrder => {
+                f.write_str("the sensor's rotation is read as (w, x, y, z): its four numbers are (x, y, z, w)")
+            }
             Self::Fan { stated, truth } => {
                 write!(f, "the fan is {} in place of {} degrees", short(*stated), short(*truth))
             }

@@ -2,6 +2,7 @@
 
 mod candidates;
 mod drawn;
+mod light;
 mod one;
 mod rays;
 mod sensors;

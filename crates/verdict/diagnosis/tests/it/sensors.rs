@@ -15,7 +15,7 @@ const CAMERA: SensorId = SensorId::Camera;
 const BEAM: SensorId = SensorId::Beam(1);
 
 /// Mistakes in the camera, and the key by which each is told.
-const TABLE: [(&str, &str); 17] = [
+const TABLE: [(&str, &str); 26] = [
     ("last row lost", "lines_lost"),
     ("last row 0", "lines_lost"),
     ("last row twice", "line_doubled"),
@@ -33,6 +33,23 @@ const TABLE: [(&str, &str); 17] = [
     ("far ranges clamped", "cut_off"),
     ("range from the plane", "from_plane"),
     ("rows reversed", "rows_reversed"),
+    ("width of pixels", "pixel_pitch"),
+    ("height of pixels", "pixel_pitch"),
+    ("both sides of pixels", "pixel_pitch"),
+    ("rotation read as w, x, y, z", "quaternion_order"),
+    ("lengths negated", "lengths_negated"),
+    ("depth negated", "lengths_negated"),
+    ("inverse depth", "inverse"),
+    ("points' axes", "axes"),
+    ("normals' axes", "axes"),
+];
+
+/// The same in a beam.
+const OF_BEAM: [(&str, &str); 4] = [
+    ("thickness", "thickness"),
+    ("another beam", "other_beam"),
+    ("pose inverted", "pose_inverted"),
+    ("inverse lengths", "inverse"),
 ];
 
 fn named(name: &str) -> Make {
@@ -55,6 +72,26 @@ fn a_mistake_in_the_camera_is_told_of_the_camera_alone() {
         assert_eq!(few_pyramids().reasons(&wrong.candidate), [format!("camera: {key}")], "{name}");
         assert_eq!(wrong.false_reason(few_pyramids().diagnosis(&wrong.candidate).as_ref()), None);
     }
+}
+
+#[test]
+fn a_mistake_in_a_beam_is_told_of_the_beam_alone() {
+    for (name, key) in OF_BEAM {
+        let wrong = made(few_pyramids(), &[(name, BEAM)]);
+        assert_eq!(few_pyramids().reasons(&wrong.candidate), [format!("beam-1: {key}")], "{name}");
+        assert_eq!(wrong.false_reason(few_pyramids().diagnosis(&wrong.candidate).as_ref()), None);
+    }
+}
+
+#[test]
+fn axes_are_told_of_the_vectors_that_have_them() {
+    let told = |name: &str| {
+        let wrong = made(few_pyramids(), &[(name, CAMERA)]);
+        few_pyramids().diagnosis(&wrong.candidate).unwrap().reasons[0].mistakes[0].to_string()
+    };
+    assert!(told("points' axes").starts_with("points are in other axes"));
+    assert!(told("normals' axes").starts_with("normals are in other axes"));
+    assert!(told("axes turned").starts_with("points and normals are in other axes"));
 }
 
 #[test]

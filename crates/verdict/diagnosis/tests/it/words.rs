@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use raypencil_diagnosis::{
-    AngleUnit, Cosine, CutBy, Diagnosis, Held, Leg, Length, LengthUnit, Mistake, Reason, Turn,
+    AngleUnit, Cosine, CutBy, Diagnosis, Held, Leg, Length, LengthUnit, Mistake, Reason, Turn, Vectors,
 };
 use raypencil_scene::SensorId;
 
@@ -30,7 +30,21 @@ fn all() -> Vec<Mistake> {
         Mistake::Unit(LengthUnit::Feet),
         Mistake::AxesYUp,
         Mistake::AxesYUpInverse,
-        Mistake::Axes { from: [1, 0, 2], sign: [1, -1, 1] },
+        Mistake::Axes { of: Vectors::Both, from: [1, 0, 2], sign: [1, -1, 1] },
+        Mistake::Axes { of: Vectors::Points, from: [1, 0, 2], sign: [1, -1, 1] },
+        Mistake::Axes { of: Vectors::Normals, from: [1, 0, 2], sign: [1, -1, 1] },
+        Mistake::LengthsNegated(Length::Depth),
+        Mistake::LengthsNegated(Length::All),
+        Mistake::Inverse(Length::Range),
+        Mistake::HoldsBeam(1),
+        Mistake::BeamFluxExchanged,
+        Mistake::VisibleReversed,
+        Mistake::NoShadowTest,
+        Mistake::FluxOfWrongPencils,
+        Mistake::PixelPitch { stated: [4e-5; 2], truth: [3.84e-5, 4e-5] },
+        Mistake::Thickness { stated: 0.0, truth: 0.02 },
+        Mistake::PoseInverted,
+        Mistake::QuaternionOrder,
         Mistake::SensorFrame,
         Mistake::GlobalFrame,
         Mistake::NormalsReversed,

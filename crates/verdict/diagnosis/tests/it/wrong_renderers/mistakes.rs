@@ -52,14 +52,42 @@ pub const MISTAKES: &[Make] = &[
             Mistake::Affine { of: Length::Depth, factor: 1.0 / axis, offset: 0.0 },
         ]
     }),
+    ("lengths negated", |m| {
+        m.lengths(Length::All, |_, _, x| -x);
+        parts(Length::All).map(Mistake::LengthsNegated).collect()
+    }),
+    ("depth negated", |m| {
+        m.lengths(Length::Depth, |_, _, x| -x);
+        vec![Mistake::LengthsNegated(Length::Depth)]
+    }),
+    ("inverse depth", |m| {
+        m.lengths(Length::Depth, |_, _, x| 1.0 / x);
+        vec![Mistake::Inverse(Length::Depth)]
+    }),
+    ("inverse lengths", |m| {
+        m.lengths(Length::All, |_, _, x| 1.0 / x);
+        parts(Length::All).map(Mistake::Inverse).collect()
+    }),
+    ("another beam", |m| {
+        let SensorId::Beam(own) = m.sensor else { return Vec::new() };
+        let scene = m.bench.scene;
+        let is_alike =
+            |beam: &usize| *beam != own && scene.size(SensorId::Beam(*beam)) == scene.size(m.sensor);
+        let Some(other) = (0..scene.beams().len()).find(is_alike) else { return Vec::new() };
+        let exact = m.bench.exact.answers.map(SensorId::Beam(other)).clone();
+        *m.map = SensorMap { sensor: m.sensor, ..exact };
+        vec![Mistake::HoldsBeam(other)]
+    }),
     ("millimetres", |m| units(m, LengthUnit::Millimetres, 1e3)),
     ("centimetres", |m| units(m, LengthUnit::Centimetres, 1e2)),
     ("kilometres", |m| units(m, LengthUnit::Kilometres, 1e-3)),
     ("feet", |m| units(m, LengthUnit::Feet, 1.0 / 0.3048)),
     ("y up", |m| turned(m, Mistake::AxesYUp)),
     ("y up twice", |m| turned(m, Mistake::AxesYUpInverse)),
-    ("left-handed", |m| turned(m, Mistake::Axes { from: [0, 1, 2], sign: [1, -1, 1] })),
-    ("axes turned", |m| turned(m, Mistake::Axes { from: [2, 0, 1], sign: [1; 3] })),
+    ("left-handed", |m| turned(m, Mistake::Axes { of: Vectors::Both, from: [0, 1, 2], sign: [1, -1, 1] })),
+    ("axes turned", |m| turned(m, Mistake::Axes { of: Vectors::Both, from: [2, 0, 1], sign: [1; 3] })),
+    ("points' axes", |m| turned_alone(m, Vectors::Points)),
+    ("normals' axes", |m| turned_alone(m, Vectors::Normals)),
     ("sensor's frame", |m| {
         let pose = m.pose();
         m.vectors(true, |_, _, p| pose.inverse() * p);
@@ -68,7 +96,7 @@ pub const MISTAKES: &[Make] = &[
     }),
     ("normals inward", |m| {
         m.vectors(false, |_, _, n| -n);
-        vec![Mistake::NormalsReversed, Mistake::Axes { from: [0, 1, 2], sign: [-1; 3] }]
+        vec![Mistake::NormalsReversed]
     }),
     ("normals not unit", |m| {
         m.vectors(false, |i, j, n| n * (1.5 + f64::from((i + j) % 7)));
@@ -166,6 +194,39 @@ pub const MISTAKES: &[Make] = &[
         let scene = m.other_sensor(|numbers| *numbers.focal_length *= factor);
         *m.map = m.rendered(&scene);
         vec![Mistake::FocalLength { stated: truth * factor, truth }]
+    }),
+    ("width of pixels", |m| {
+        let by = 1.0 + m.random.number(1e-3, 5e-2);
+        pitched(m, [by, 1.0])
+    }),
+    ("height of pixels", |m| {
+        let by = 1.0 + m.random.number(1e-3, 5e-2);
+        pitched(m, [1.0, by])
+    }),
+    ("both sides of pixels", |m| {
+        let by = 1.0 + m.random.number(1e-2, 5e-2);
+        pitched(m, [by, 1.0 / by])
+    }),
+    ("thickness", |m| {
+        let SensorId::Beam(beam) = m.sensor else { return Vec::new() };
+        let truth = m.bench.scene.beams()[beam].sensor.thickness;
+        let stated = truth * (1.0 + m.random.number(5e-2, 0.5));
+        let scene = m.other_sensor(|numbers| numbers.pitch[1] = stated);
+        *m.map = m.rendered(&scene);
+        vec![Mistake::Thickness { stated, truth }]
+    }),
+    ("pose inverted", |m| {
+        let scene = m.other_sensor(|numbers| *numbers.pose = numbers.pose.inverse());
+        *m.map = m.rendered(&scene);
+        vec![Mistake::PoseInverted]
+    }),
+    ("rotation read as w, x, y, z", |m| {
+        let scene = m.other_sensor(|numbers| {
+            let [x, y, z, w] = numbers.pose.rotation.to_array();
+            numbers.pose.rotation = glam::DQuat::from_xyzw(y, z, w, x);
+        });
+        *m.map = m.rendered(&scene);
+        vec![Mistake::QuaternionOrder]
     }),
     ("fan", |m| {
         let SensorId::Beam(beam) = m.sensor else { return Vec::new() };

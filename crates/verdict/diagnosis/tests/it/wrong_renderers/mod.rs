@@ -4,7 +4,9 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use raypencil_diagnosis::{AngleUnit, CutBy, Diagnosis, Held, Length, LengthUnit, Mistake, Reason, Turn};
+use raypencil_diagnosis::{
+    AngleUnit, CutBy, Diagnosis, Held, Length, LengthUnit, Mistake, Reason, Turn, Vectors,
+};
 use raypencil_judge::{Quantity, Recorded};
 use raypencil_referee::ExactRenderer;
 use raypencil_scene::{FaceId, Maybe, Mesh, Pose, Renderer, Request, Scene, SensorId, SensorMap};
@@ -206,6 +208,7 @@ impl Making<'_> {
                 });
                 beam.sensor.half_width =
                     if width[0] == beam.sensor.half_width { half_width } else { width[0] };
+                beam.sensor.thickness = width[1];
             }
         }
         Scene::new(Arc::clone(scene.mesh()), camera, beams, scene.atmosphere(), scene.flux_model()).unwrap()
@@ -265,7 +268,32 @@ fn turned(making: &mut Making<'_>, mistake: Mistake) -> Vec<Mistake> {
     };
     making.vectors(true, |_, _, p| turn(p));
     making.vectors(false, |_, _, n| turn(n));
-    vec![mistake]
+    // A candidate may leave out one of the two.
+    let alone = |of| match mistake {
+        Mistake::AxesYUp => Mistake::Axes { of, from: [0, 2, 1], sign: [1, -1, 1] },
+        Mistake::AxesYUpInverse => Mistake::Axes { of, from: [0, 2, 1], sign: [1, 1, -1] },
+        Mistake::Axes { from, sign, .. } => Mistake::Axes { of, from, sign },
+        other => other,
+    };
+    vec![mistake, alone(Vectors::Points), alone(Vectors::Normals)]
+}
+
+/// The axes of the points alone, or of the normals.
+fn turned_alone(making: &mut Making<'_>, of: Vectors) -> Vec<Mistake> {
+    making.vectors(of == Vectors::Points, |_, _, v| DVec3::new(v.y, v.x, -v.z));
+    vec![Mistake::Axes { of, from: [1, 0, 2], sign: [1, 1, -1] }]
+}
+
+/// Another pitch across, or down, or both.
+fn pitched(making: &mut Making<'_>, by: [f64; 2]) -> Vec<Mistake> {
+    if making.sensor != SensorId::Camera {
+        return Vec::new();
+    }
+    let truth = making.bench.scene.camera().sensor.pixel_pitch;
+    let stated = [truth[0] * by[0], truth[1] * by[1]];
+    let scene = making.other_sensor(|numbers| *numbers.pitch = stated);
+    *making.map = making.rendered(&scene);
+    vec![Mistake::PixelPitch { stated, truth }]
 }
 
 /// Rays through another point of the cell. For a beam, whose rows start at other places, by columns alone.

@@ -127,7 +127,12 @@ fn is_same(made: &Mistake, told: &Mistake) -> bool {
     }
     // How much a number may differ: a hundredth of what it is off by.
     let difference = match (made, told) {
-        (Mistake::FocalLength { stated, truth }, _) | (Mistake::Fan { stated, truth }, _) => stated - truth,
+        (Mistake::FocalLength { stated, truth }, _)
+        | (Mistake::Fan { stated, truth }, _)
+        | (Mistake::Thickness { stated, truth }, _) => stated - truth,
+        (Mistake::PixelPitch { stated, truth }, _) => {
+            (stated[0] - truth[0]).abs().max((stated[1] - truth[1]).abs())
+        }
         (Mistake::Affine { factor, offset: 0.0, .. }, _) => factor - 1.0,
         // A cut lies somewhere between two hits.
         (Mistake::Cut { .. }, _) => 10.0,
@@ -152,7 +157,23 @@ pub fn draw(bench: &Bench, seed: u64) -> Wrong {
     let casts =
         ["backs hit", "near plane", "nearest t", "maximum range", "corner", "pixel", "cx", "cy", "principal"];
     let more = [
-        "focal", "fan", "pitch", "yaw", "roll", "height", "ahead", "place", "rotation", "pose", "a face",
+        "focal",
+        "width of",
+        "height of",
+        "both sides",
+        "thickness",
+        "fan",
+        "another beam",
+        "read as",
+        "pitch",
+        "yaw",
+        "roll",
+        "height",
+        "ahead",
+        "place",
+        "rotation",
+        "pose",
+        "a face",
         "a corner",
     ];
     makes.sort_by_key(|(name, _)| !casts.iter().chain(&more).any(|start| name.contains(start)));
