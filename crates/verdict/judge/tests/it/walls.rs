@@ -784,11 +784,15 @@ fn a_right_pixel_stays_right_where_its_pencils_are_wrong() {
         output.flux[0].cells_mut().iter_mut().for_each(|flux| *flux *= 1.0 + by);
         wrong_pixels(&output)
     };
-    let sizes = [0.0, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10];
-    let expected = sizes.map(|by| brighter(&output, by));
-    assert_eq!((expected[0], expected[6]), (0, lit));
+    // Each a fifth larger than the one before, so that a bound that is a quarter off is noticed.
+    let sizes: Vec<f64> =
+        std::iter::successors(Some(1e-15), |by| Some(1.2 * by)).take_while(|by| *by < 1e-10).collect();
+    let wrong_by_size =
+        |output: &RenderOutput| -> Vec<u64> { sizes.iter().map(|by| brighter(output, *by)).collect() };
+    let expected = wrong_by_size(&output);
+    assert_eq!((expected[0], expected[sizes.len() - 1]), (0, lit));
     for wrong in [lost, hidden] {
-        assert_eq!(sizes.map(|by| brighter(&wrong, by)), expected);
+        assert_eq!(wrong_by_size(&wrong), expected);
     }
 }
 
