@@ -55,6 +55,17 @@ pub enum FolderError {
         /// What the results are of.
         of: String,
     },
+    /// What the run reads lies in the folder, made by an earlier run: this one would remove or replace it.
+    #[error(
+        "{}: an earlier run has made it in the output folder {}, and this one would replace or remove it; expected another folder",
+        path.display(), folder.display()
+    )]
+    IsInput {
+        /// Path of what is read.
+        path: PathBuf,
+        /// Path of the folder.
+        folder: PathBuf,
+    },
     /// One of the files could not be written; the message names it.
     #[error(transparent)]
     File(#[from] FileError),

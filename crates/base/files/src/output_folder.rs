@@ -169,6 +169,27 @@ impl OutputFolder {
         Ok(output)
     }
 
+    /// Refuses inputs of this run that an earlier one has made in its folder: they would be replaced or removed.
+    ///
+    /// # Errors
+    /// [`FolderError::IsInput`] for the first of the files or folders that is such a file, or holds one.
+    pub fn refuse_inputs(&self, inputs: &[&Path]) -> Result<(), FolderError> {
+        let Ok(folder) = self.folder.canonicalize() else { return Ok(()) };
+        let is_made = |input: &&&Path| {
+            let Ok(path) = input.canonicalize() else { return false };
+            path.strip_prefix(&folder).is_ok_and(|within| {
+                // The folder itself as an input holds all that was made.
+                self.earlier
+                    .iter()
+                    .any(|(name, _)| name.starts_with(within) && self.before.contains_key(name))
+            })
+        };
+        match inputs.iter().find(is_made) {
+            Some(path) => Err(FolderError::IsInput { path: path.to_path_buf(), folder: self.folder.clone() }),
+            None => Ok(()),
+        }
+    }
+
     /// The files that this run has written so far, by their paths in the folder, with their digests.
     pub fn written(&self) -> BTreeMap<PathBuf, String> {
         self.journal.written()

@@ -101,6 +101,13 @@ fn of_npy(bytes: &[u8], file: &Path) -> Result<Table, FileError> {
     }
 }
 
+/// The line on which a record stands, whose position is where the reader began to look for it: before comments and empty lines.
+fn line_of(bytes: &[u8], start: &csv::Position) -> u64 {
+    let rest = bytes.get(start.byte() as usize..).unwrap_or_default();
+    let is_skipped = |line: &&[u8]| line.starts_with(b"#") || line.trim_ascii().is_empty();
+    start.line() + rest.split(|byte| *byte == b'\n').take_while(is_skipped).count() as u64
+}
+
 fn of_csv(bytes: &[u8]) -> Result<Table, Fault> {
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
@@ -118,8 +125,11 @@ fn of_csv(bytes: &[u8]) -> Result<Table, Fault> {
                 "rows of numbers with commas between them",
             )
         })?;
-        let line = record.position().map_or(0, csv::Position::line);
-        let is_heading = rows == 0 && record.iter().all(|field| field.parse::<f64>().is_err());
+        let line = record.position().map_or(0, |start| line_of(bytes, start));
+        // Numbers with something else than commas between them are no names of columns.
+        let is_number = |word: &str| word.parse::<f64>().is_ok();
+        let has_number = |field: &str| field.split(|c: char| c == ';' || c.is_whitespace()).any(is_number);
+        let is_heading = rows == 0 && !record.iter().any(has_number);
         if is_heading && record.iter().any(|field| !field.is_empty()) && width.is_none() {
             width = Some((record.len(), line));
             // The heading must fit what follows.
@@ -128,7 +138,11 @@ fn of_csv(bytes: &[u8]) -> Result<Table, Fault> {
         let refuse =
             |found: String, expected: String| Err(Fault::new(format!("line {line}"), found, expected));
         if !matches!(record.len(), 6 | 8 | 9) {
-            return refuse(format!("{} fields", record.len()), ROW.into());
+            let found = match record.len() {
+                1 if has_number(&record[0]) => "no comma between its numbers".into(),
+                count => format!("{count} fields"),
+            };
+            return refuse(found, ROW.into());
         }
         if let Some((first, of_line)) = width
             && first != record.len()

@@ -78,6 +78,11 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
     for (name, word) in &command.rules {
         arguments.push_str(&format!(" --rule {name}={word}"));
     }
+    for (index, (name, _)) in command.rules.iter().enumerate() {
+        if command.rules[..index].iter().any(|(other, _)| other == name) {
+            return Err(Trouble::Usage(format!("--rule {name} is given twice; expected different rules")));
+        }
+    }
     if !command.record.is_empty() {
         arguments.push_str(&format!(" --record {}", command.record.join(",")));
     }
@@ -103,7 +108,7 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
         Some(folder) => folder.clone(),
         None => Path::new("out").join(format!("{}-drive", job.name)),
     };
-    let output = output_folder(&folder, &command.scene.scene)?;
+    let output = output_folder(&folder, &command.scene.scene, command.stripes.as_deref().as_slice())?;
     let stripes = command.stripes.as_deref().map(StripeFile::read).transpose()?;
     let mut contents = RecordContents::default();
     for word in &command.record {

@@ -29,12 +29,15 @@ pub(crate) fn subject(given: &str) -> String {
     std::fs::canonicalize(given).map_or(given.to_string(), |path| path.to_string_lossy().into_owned())
 }
 
-/// Begins the output folder of a run on a scene, a mesh or a pack.
-pub(crate) fn output_folder(folder: &Path, of: &str) -> Result<OutputFolder, FolderError> {
+/// Begins the output folder of a run on a scene, a mesh or a pack. `inputs` are the files and folders that the run reads: none of them
+/// may be an earlier run's in this folder.
+pub(crate) fn output_folder(folder: &Path, of: &str, inputs: &[&Path]) -> Result<OutputFolder, FolderError> {
     if let Some(parts) = parts_in(folder).filter(|_| !is_forced()) {
         return Err(FolderError::IsOfOther { path: folder.to_path_buf(), of: parts.to_string() });
     }
-    OutputFolder::begin_of(folder, &subject(of), is_forced())
+    let output = OutputFolder::begin_of(folder, &subject(of), is_forced())?;
+    output.refuse_inputs(&[inputs, &[Path::new(of)]].concat())?;
+    Ok(output)
 }
 
 /// What several runs made together in their folder, which has no list of it.
@@ -90,6 +93,18 @@ fn ask_parts(folder: &Path, is_same: impl Fn(&Parts) -> bool) -> Result<(), Fold
     }
     match parts_in(folder).filter(|parts| !is_same(parts)) {
         Some(parts) => refused(folder, parts.to_string()),
+        None => Ok(()),
+    }
+}
+
+/// Refuses to write a pack over what it is made of, such as the scene of a pack.
+pub(crate) fn ask_pack_inputs(folder: &Path, inputs: &[&Path]) -> Result<(), FolderError> {
+    let Ok(whole) = folder.canonicalize() else { return Ok(()) };
+    let is_within = |input: &&&Path| input.canonicalize().is_ok_and(|path| path.starts_with(&whole));
+    let is_pack =
+        ["manifest.json", "raypack.json", "input.json"].iter().any(|name| folder.join(name).exists());
+    match inputs.iter().find(is_within).filter(|_| is_pack) {
+        Some(path) => Err(FolderError::IsInput { path: path.to_path_buf(), folder: folder.to_path_buf() }),
         None => Ok(()),
     }
 }

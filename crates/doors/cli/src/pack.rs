@@ -18,11 +18,13 @@ use raypencil::{NamedRaySet, Progress as _, Sides};
 use crate::args::Pack;
 use crate::console::{Spinner, say, warn};
 use crate::memory::Rates;
-use crate::overwriting::{PackOf, ask_pack};
+use crate::overwriting::{PackOf, ask_pack, ask_pack_inputs};
 use crate::subject::subject;
 use crate::{Outcome, Trouble, memory};
 
 pub(crate) fn pack(command: &Pack, json: bool) -> Result<Outcome, Trouble> {
+    let rays = command.rays.as_deref();
+    ask_pack_inputs(&command.output, &[&[Path::new(&command.scene.scene)], rays.as_slice()].concat())?;
     // No list of files is left in a pack: its manifest is one.
     let output = OutputFolder::begin_any(&command.output)?;
     let outcome = packed_into(command, json)?;

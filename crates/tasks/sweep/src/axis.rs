@@ -161,7 +161,18 @@ fn range(text: &str, room: usize) -> Result<Option<Vec<String>>, String> {
         return Err(format!("{text} does not come to its end; expected FIRST:LAST:STEP, such as 20:35:5"));
     }
     // A thousandth of a step of room for the last value.
-    let count = ((high - low) / by + 1e-3).floor();
+    let steps = (high - low) / by;
+    let count = (steps + 1e-3).floor();
+    if steps - count > 1e-3 {
+        let [last, next] = [low + count * by, low + (count + 1.0) * by].map(|value| {
+            // As few digits as the numbers have: sums of decimals have others behind them.
+            let short: f64 = format!("{value:.9e}").parse().unwrap_or(value);
+            short.to_string()
+        });
+        return Err(format!(
+            "{text} passes its end: {last} is before it and {next} behind; expected a range that ends at one of the two"
+        ));
+    }
     if count >= room as f64 {
         return Err(format!("{text} has {} values; expected at most {MAX_VALUES}", count + 1.0));
     }
@@ -189,8 +200,6 @@ mod tests {
         assert_eq!(values("a=0.1:0.5:0.1"), ["0.1", "0.2", "0.3", "0.4", "0.5"]);
         assert_eq!(values("a=3:-3:-3"), ["3", "0", "-3"]);
         assert_eq!(values("a=1:2:0.25, 7"), ["1.00", "1.25", "1.50", "1.75", "2.00", "7"]);
-        // The last step would pass the end.
-        assert_eq!(values("a=20:34:5"), ["20", "25", "30"]);
         assert_eq!(values("a=5:5:1"), ["5"]);
         assert_eq!(values("a=1e-3:3e-3:1e-3"), ["1e-3", "2e-3", "3e-3"]);
         // No numbers: a text with colons.
@@ -237,6 +246,9 @@ mod tests {
             ("a b=1", "`a b` is no key"),
             ("a=1:2:0", "does not come to its end"),
             ("a=1:2:-1", "does not come to its end"),
+            ("a=20:34:5", "20:34:5 passes its end: 30 is before it and 35 behind"),
+            ("a=0:1:0.3", "0:1:0.3 passes its end: 0.9 is before it and 1.2 behind"),
+            ("a=3:-3:-4", "3:-3:-4 passes its end: -1 is before it and -5 behind"),
             ("a=0:1e9:1", "expected at most 1000000"),
             ("a=1,2,1", "1 is given twice"),
             ("a=20:35", "20:35: a range needs a step; expected FIRST:LAST:STEP, such as 20:35:5"),

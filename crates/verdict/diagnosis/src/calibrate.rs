@@ -8,6 +8,7 @@ use raypencil_scene::{FaceId, HitQuantity, Place, Scene, SensorId};
 
 use crate::case::Case;
 use crate::channel::{Channel, Value, hit_quantity};
+use crate::lengths::MAX_COSINE_OF_TWO_PLANES;
 use crate::mistake::{Mistake, Turn};
 use crate::numbers::{middle, plainest};
 use crate::rules::{Numbers, Rules, ray};
@@ -122,6 +123,12 @@ struct Sight {
 }
 
 impl Sight {
+    /// Whether its plane and another one count as one, up to a turn by some degrees.
+    fn is_parallel_to(&self, other: &Self) -> bool {
+        let cosine = self.normal.dot(other.normal) / (self.normal.length() * other.normal.length());
+        cosine >= MAX_COSINE_OF_TWO_PLANES
+    }
+
     /// Relative difference of the stated length and that of the ray by some numbers.
     fn residual(&self, scene: &Scene, numbers: &Numbers) -> f64 {
         let Some(ray) = ray(scene, self.place, numbers) else { return f64::NAN };
@@ -152,8 +159,11 @@ pub(crate) fn calibrations(case: Case<'_>, places: &[Place]) -> Vec<(Mistake, Ru
     };
     let Some(before) = median_size(&residuals(&Numbers::SCENE)) else { return Vec::new() };
     let mut best: Vec<Fit> = Vec::new();
+    // Lengths that all end in one plane are as much longer from another place as by a factor.
+    let has_planes = sights.iter().any(|sight| !sight.is_parallel_to(&sights[0]));
     for model in models(sensor) {
-        if sights.len() < MIN_RAYS_PER_NUMBER * model.len() {
+        let has_shift = model.iter().any(|one| matches!(one, ShiftX | ShiftY | ShiftZ));
+        if sights.len() < MIN_RAYS_PER_NUMBER * model.len() || has_shift && !has_planes {
             continue;
         }
         let is_good = |fit: &Fit| fit.left <= MAX_LEFT * before && is_small(scene, sensor, &fit.numbers);

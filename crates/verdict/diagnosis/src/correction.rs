@@ -68,14 +68,15 @@ impl Correction {
             Mistake::NormalsReversed | Mistake::NormalsNotUnit => hit == Some(H::Normal),
             Mistake::CosinesNegated | Mistake::AngleForCosine(_) => is_cosine,
             Mistake::CosinesExchanged(_) => is_cosine && channel.sensor != SensorId::Camera,
-            Mistake::PixelRowsFromBottom | Mistake::PixelsExchanged => quantity == Quantity::Pixel,
+            Mistake::PixelRowsFromBottom | Mistake::PixelColumnsFromRight | Mistake::PixelsExchanged => {
+                quantity == Quantity::Pixel
+            }
             Mistake::OtherFluxModel | Mistake::AttenuationOn(_) | Mistake::FluxFactor(_) => is_flux,
             Mistake::Affine { of: Length::All, offset: 0.0, .. } => {
                 matches!(hit, Some(H::Range | H::Depth | H::Point)) || quantity == Quantity::CameraDepth
             }
             // Depths in the camera are depths, too.
             Mistake::Rounded { of: Length::Depth | Length::All, .. }
-            | Mistake::LengthsNegated(Length::Depth | Length::All)
             | Mistake::Inverse(Length::Depth | Length::All)
                 if quantity == Quantity::CameraDepth =>
             {
@@ -84,7 +85,6 @@ impl Correction {
             Mistake::Affine { of, .. }
             | Mistake::FromPlane(of)
             | Mistake::Rounded { of, .. }
-            | Mistake::LengthsNegated(of)
             | Mistake::Inverse(of) => match of {
                 Length::Range => hit == Some(H::Range),
                 Length::Depth => hit == Some(H::Depth),
@@ -141,7 +141,6 @@ impl Correction {
             Mistake::Affine { of: Length::All, .. }
                 | Mistake::FromPlane(Length::All)
                 | Mistake::Rounded { of: Length::All, .. }
-                | Mistake::LengthsNegated(Length::All)
                 | Mistake::Inverse(Length::All)
         )
     }
@@ -231,7 +230,7 @@ impl Correction {
             Mistake::Affine { factor, offset, .. } => (number - offset) / factor,
             Mistake::FromPlane(_) if channel.item.quantity == Quantity::Range => number + length(),
             Mistake::FromPlane(_) => number + axis,
-            Mistake::CosinesNegated | Mistake::LengthsNegated(_) => -number,
+            Mistake::CosinesNegated => -number,
             Mistake::Inverse(_) => 1.0 / number,
             Mistake::AngleForCosine(unit) => unit.cosine(number),
             Mistake::CosinesExchanged(held) => {
@@ -317,6 +316,9 @@ impl Correction {
         let pixel = match self.mistake {
             Mistake::PixelRowsFromBottom => {
                 Pixel { j: (height - 1).checked_sub(pixel.j).unwrap_or(pixel.j), ..pixel }
+            }
+            Mistake::PixelColumnsFromRight => {
+                Pixel { i: (width - 1).checked_sub(pixel.i).unwrap_or(pixel.i), ..pixel }
             }
             Mistake::PixelsExchanged => Pixel { i: pixel.j, j: pixel.i },
             _ => pixel,

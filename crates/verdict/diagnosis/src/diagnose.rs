@@ -46,6 +46,21 @@ pub fn diagnose(truth: &GroundTruth<'_>, recorded: &Recorded, check: &Check) -> 
         found.extend(same.map(|finding| (sensors, finding)));
         is_open
     });
+    // What several sensors say is tried on one that says something else: both may fit it, and one mistake is likelier.
+    let alone: Vec<Finding> = found.iter().map(|(_, finding)| finding.clone()).collect();
+    let count = |words: &[String]| alone.iter().filter(|one| words_of(&one.mistakes) == words).count();
+    for (sensors, finding) in &mut found {
+        let own = words_of(&finding.mistakes);
+        let is_commoner = |one: &&Finding| {
+            let words = words_of(&one.mistakes);
+            words != own && count(&words) > count(&own)
+        };
+        let tried = alone.iter().filter(is_commoner).max_by_key(|one| count(&words_of(&one.mistakes)));
+        let same = tried.and_then(|one| with_search(sensors, &|search| search.confirm(one)));
+        if let Some(same) = same.filter(|same| same.tally.off() <= finding.tally.off()) {
+            *finding = same;
+        }
+    }
     // Another camera has the light of right pencils land elsewhere.
     if let Some((_, of_camera)) = found.iter_mut().find(|(sensors, _)| *sensors == [SensorId::Camera])
         && let Some((mistake, numbers)) = other_camera(truth, of_camera)
@@ -124,13 +139,15 @@ fn beside_single_precision(
     Some(found)
 }
 
+fn words_of(mistakes: &[Mistake]) -> Vec<String> {
+    mistakes.iter().map(ToString::to_string).collect()
+}
+
 /// Sensors with the same reason, in the same words, are told together.
 fn together(found: Vec<(Vec<SensorId>, Finding)>, compared: usize) -> Vec<Reason> {
     let mut reasons: Vec<Reason> = Vec::new();
     for (sensors, Finding { mistakes, tally, .. }) in found {
-        let words =
-            |mistakes: &[Mistake]| -> Vec<String> { mistakes.iter().map(ToString::to_string).collect() };
-        match reasons.iter_mut().find(|reason| words(&reason.mistakes) == words(&mistakes)) {
+        match reasons.iter_mut().find(|reason| words_of(&reason.mistakes) == words_of(&mistakes)) {
             Some(reason) => {
                 reason.sensors.extend(sensors);
                 reason.wrong += tally.wrong;

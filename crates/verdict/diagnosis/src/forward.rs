@@ -5,6 +5,7 @@ use crate::agree::is_near;
 use crate::case::Case;
 use crate::channel::{Channel, Value};
 use crate::mistake::{CutBy, Held, Mistake};
+use glam::DVec3;
 use raypencil_files::Storage;
 use raypencil_judge::{Item, Quantity};
 use raypencil_scene::{Place, SensorId};
@@ -65,10 +66,17 @@ pub(crate) fn foretold(
         }
         _ => return stated,
     };
-    match (is_foretold, exact) {
-        (true, _) => exact,
-        (false, Value::Flag(flag)) => Value::Flag(!flag),
-        (false, _) => Value::Number(f64::NAN),
+    if is_foretold { exact } else { wrong(exact, stated) }
+}
+
+/// A value that no other correction makes right.
+fn wrong(exact: Value, stated: Value) -> Value {
+    match exact {
+        Value::Nothing => stated,
+        Value::Face(_) | Value::Pixel(_) => Value::Nothing,
+        Value::Number(_) => Value::Number(f64::NAN),
+        Value::Vector(_) => Value::Vector(DVec3::NAN),
+        Value::Flag(flag) => Value::Flag(!flag),
     }
 }
 

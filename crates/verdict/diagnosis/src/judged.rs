@@ -158,10 +158,17 @@ fn corrected_cells(
                 let Some(value) = corrected(case, channel, place, corrections) else { return exact };
                 let source = corrections.iter().try_fold(place, |source, one| one.source(case, source));
                 let stated = channel.at(&case.recorded.answers, source.unwrap_or(place));
-                match absorbed(storage, stated, value, exact) {
-                    // A flux is never negative, nor anything else than a number.
-                    Value::Number(number) if is_flux && !number.is_finite() => Value::Number(0.0),
-                    value => value,
+                match (absorbed(storage, stated, value, exact), exact) {
+                    // What no correction makes right must be a number: one that is missing beside a face is not compared.
+                    (Value::Number(number), Value::Number(exact)) if !number.is_finite() => {
+                        Value::Number(2.0 * exact.abs() + 1.0)
+                    }
+                    (Value::Vector(vector), Value::Vector(exact)) if !vector.is_finite() => {
+                        Value::Vector(-exact - 1.0)
+                    }
+                    // A flux is never anything else than a number.
+                    (Value::Number(number), _) if is_flux && !number.is_finite() => Value::Number(0.0),
+                    (value, _) => value,
                 }
             })
         })

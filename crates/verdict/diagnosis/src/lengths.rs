@@ -31,7 +31,7 @@ const QUANTUM_DIGITS: f64 = 16.0;
 
 /// Cosine of the angle between two planes that count as two. In one plane, a factor is the same as another place of the
 /// sensor: nothing tells them apart.
-const MAX_COSINE_OF_TWO_PLANES: f64 = 0.999;
+pub(crate) const MAX_COSINE_OF_TWO_PLANES: f64 = 0.999;
 
 /// Stated and exact lengths, the coarsest last digit of the stated, and the longest exact one.
 struct Pairs {

@@ -198,8 +198,6 @@ pub enum Mistake {
     SensorFrame,
     /// Points are in the global frame: the scene origin is added.
     GlobalFrame,
-    /// Lengths are negative where they should be positive.
-    LengthsNegated(Length),
     /// A length is one over the true one.
     Inverse(Length),
     /// A beam's cells hold what is true of the beam with this index.
@@ -224,6 +222,8 @@ pub enum Mistake {
     CosinesExchanged([Cosine; 3]),
     /// `pixel.J` counts rows from the bottom.
     PixelRowsFromBottom,
+    /// `pixel.I` counts columns from the right.
+    PixelColumnsFromRight,
     /// `pixel.I` holds the row and `pixel.J` the column.
     PixelsExchanged,
     /// The flux is that of the other model.
@@ -374,7 +374,6 @@ impl Mistake {
             Self::Axes { .. } => "axes",
             Self::SensorFrame => "sensor_frame",
             Self::GlobalFrame => "global_frame",
-            Self::LengthsNegated(_) => "lengths_negated",
             Self::Inverse(_) => "inverse",
             Self::HoldsBeam(_) => "other_beam",
             Self::BeamFluxExchanged => "beam_flux_exchanged",
@@ -388,6 +387,7 @@ impl Mistake {
             Self::AngleForCosine(AngleUnit::Degrees) => "degrees_for_cosine",
             Self::CosinesExchanged(_) => "cosines_exchanged",
             Self::PixelRowsFromBottom => "pixel_rows_from_bottom",
+            Self::PixelColumnsFromRight => "pixel_columns_from_right",
             Self::PixelsExchanged => "pixels_exchanged",
             Self::OtherFluxModel => "other_flux_model",
             Self::AttenuationOn(_) => "attenuation",
@@ -452,8 +452,8 @@ impl Mistake {
             | Self::AngleForCosine(_)
             | Self::CosinesExchanged(_)
             | Self::PixelRowsFromBottom
+            | Self::PixelColumnsFromRight
             | Self::PixelsExchanged
-            | Self::LengthsNegated(_)
             | Self::HoldsBeam(_)
             | Self::BeamFluxExchanged
             | Self::VisibleReversed => (FILES, "Maps: OpenEXR"),

@@ -174,7 +174,15 @@ impl<'t> Search<'t> {
                 && 2 * plan.off.lost <= before
                 && (!has_order || self.has_values() && f64::from(plan.off.held) <= most_off)
         });
-        plans.sort_by_key(|plan| plan.off.held);
+        // What is said of all channels, and true of some, is less plain than what is said of these alone.
+        let idle = |plan: &Plan| {
+            let of_channel = |(channel, subset): &(Channel, usize)| {
+                let touching = plan.corrections.iter().enumerate().filter(|(_, one)| one.touches(*channel));
+                touching.filter(|(bit, _)| subset >> bit & 1 == 0).count()
+            };
+            plan.applied.iter().map(of_channel).sum::<usize>()
+        };
+        plans.sort_by_key(|plan| (plan.off.held, idle(plan)));
         plans.truncate(most);
         plans
     }

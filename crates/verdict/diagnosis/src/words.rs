@@ -87,10 +87,6 @@ impl fmt::Display for Mistake {
             Self::GlobalFrame => {
                 f.write_str("points are in the global frame: the scene frame starts at the scene origin")
             }
-            Self::LengthsNegated(of) => {
-                let (subject, verb) = subject(*of);
-                write!(f, "{subject} {verb} negative: lengths are positive along the ray and the sensor's normal axis")
-            }
             Self::Inverse(of) => {
                 let (subject, verb) = subject(*of);
                 write!(f, "{subject} {verb} 1 over the true length")
@@ -131,6 +127,9 @@ impl fmt::Display for Mistake {
             }
             Self::PixelRowsFromBottom => {
                 f.write_str("pixel.J counts rows from the bottom: row 0 is the top row")
+            }
+            Self::PixelColumnsFromRight => {
+                f.write_str("pixel.I counts columns from the right: column 0 is the left column")
             }
             Self::PixelsExchanged => {
                 f.write_str("pixel.I and pixel.J are exchanged: pixel.I is the column")

@@ -71,6 +71,13 @@ fn each_wrong_file_is_told_where_it_is_wrong() {
         ),
         (b"0,0,0,0,0,1\n0,0,0,0,0".to_vec(), "rays: line 2: 5 fields; expected 6 numbers"),
         (b"0,0,0,0,0,1\n0,0,0,0,0,1,0,1".to_vec(), "rays: line 2: 8 fields; expected 6, as line 1 has"),
+        (
+            b"# one\n\n0,0,0,0,0,1\n# two\n0,0,0,0,0,1,0,1".to_vec(),
+            "rays: line 5: 8 fields; expected 6, as line 3 has",
+        ),
+        (b"0;0;0;0;0;1\n".to_vec(), "rays: line 1: no comma between its numbers; expected 6 numbers"),
+        (b"0 0 0 0 0 1\n".to_vec(), "rays: line 1: no comma between its numbers; expected 6 numbers"),
+        (b"0\t0\t0\t0\t0\t1\n".to_vec(), "rays: line 1: no comma between its numbers; expected 6 numbers"),
         (b"a,b,c,d,e,f\n0,0,0,0,0,1,0,1".to_vec(), "rays: line 2: 8 fields; expected 6, as line 1 has"),
         (b"0,0,0,0,0,1\n0,0,x,0,0,1".to_vec(), "rays: line 2: field 3: \"x\"; expected a number"),
         (b"0,0,0,0,0,1\na,b,c,d,e,f".to_vec(), "rays: line 2: field 1: \"a\"; expected a number"),

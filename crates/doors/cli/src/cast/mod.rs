@@ -59,7 +59,10 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
     memory::ask_cast(count, mesh.faces().len())?;
     let folder = command.output.as_deref();
     let output = match folder {
-        Some(folder) => Some(output_folder(folder, &command.mesh.to_string_lossy())?),
+        Some(folder) => {
+            let rays = command.rays.as_deref();
+            Some(output_folder(folder, &command.mesh.to_string_lossy(), rays.as_slice())?)
+        }
         None => None,
     };
     let results = match &rays {

@@ -21,7 +21,8 @@ pub struct Bench {
 }
 
 impl Bench {
-    fn of(scene: Scene) -> Self {
+    /// A scene with its exact answers.
+    pub fn of(scene: Scene) -> Self {
         let scene: &'static Scene = Box::leak(Box::new(scene));
         let output = ExactRenderer.render(scene, &Request::EVERYTHING);
         let mut exact = Recorded::of_output("exact", scene, &output, Precision::F64);
@@ -154,6 +155,18 @@ pub fn two_walls() -> Bench {
     let faces = [front(0), front(4)].concat();
     let plaster = Material { name: "plaster".into(), reflectivity: 0.5 };
     let mesh = Mesh::new(DVec3::ZERO, corners, faces, vec![0; 4], vec![plaster]).unwrap();
+    let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: rig::camera(32, 24, 0.03125, 1.0) };
+    let air = Atmosphere { attenuation: 0.0 };
+    Bench::of(Scene::new(Arc::new(mesh), camera, vec![], air, FluxModel::Radiometric).unwrap())
+}
+
+/// One wall of these slopes that fills the view of a camera of 32 x 24 pixels, which looks along z.
+pub fn one_wall([across, down]: [f32; 2]) -> Bench {
+    let at = |x: f32, y: f32| [x, y, 8.0 + across * x + down * y];
+    let corners = vec![at(-15.0, -15.0), at(15.0, -15.0), at(15.0, 15.0), at(-15.0, 15.0)];
+    let plaster = Material { name: "plaster".into(), reflectivity: 0.5 };
+    let faces = vec![[0, 2, 1], [0, 3, 2]];
+    let mesh = Mesh::new(DVec3::ZERO, corners, faces, vec![0; 2], vec![plaster]).unwrap();
     let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: rig::camera(32, 24, 0.03125, 1.0) };
     let air = Atmosphere { attenuation: 0.0 };
     Bench::of(Scene::new(Arc::new(mesh), camera, vec![], air, FluxModel::Radiometric).unwrap())

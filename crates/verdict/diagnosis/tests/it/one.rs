@@ -299,6 +299,15 @@ fn other_light_is_named() {
         }
     });
     assert_explained(pyramids(), &from_bottom, &["pixel_rows_from_bottom"]);
+    let width = pyramids().scene.camera().sensor.width;
+    let from_right = pyramids_with(|c| {
+        for light in &mut c.answers.light {
+            for cell in light.returns.pixel.as_mut().unwrap().cells_mut() {
+                *cell = cell.get().map(|p| raypencil_scene::Pixel { i: width - 1 - p.i, ..p }).into();
+            }
+        }
+    });
+    assert_explained(pyramids(), &from_right, &["pixel_columns_from_right"]);
     let square = pyramids_of(56, 56);
     let mut exchanged = square.exact.clone();
     for light in &mut exchanged.answers.light {

@@ -335,7 +335,8 @@ impl<'a> Reader<'a> {
                         );
                         let found = format!("pixel {i},{j}");
                         let channel = (names::PIXEL[0], &self.channels.by_key[&key]);
-                        return Err(Self::fault(channel, at, found, &expected));
+                        let help = pixels_otherwise([&columns, &rows], [camera.width, camera.height]);
+                        return Err(Self::with_help(Self::fault(channel, at, found, &expected), help));
                     }
                     cells.push(Maybe::from((!is_none).then_some(Pixel { i, j })));
                 }
@@ -421,12 +422,36 @@ fn maybe(reals: Reals<'_>, hits: Hits<'_>, is_length: bool) -> Result<Image<Mayb
     let image = maybe_signed(reals, hits, is_length)?;
     if is_length && let Some(index) = image.cells().iter().position(|x| x.get().is_some_and(|x| x < 0.0)) {
         let found = reals.image.cells()[index].to_string();
-        let help = declare_miss(reals.image.cells()[index], reals.channel.storage);
+        let help = negative_lengths(reals, &image, reals.image.cells()[index]);
         let place = (reals.name, reals.channel);
         let fault = Reader::fault(place, Some(cell(reals.image, index)), found, "no negative length");
         return Err(Reader::with_help(fault, Some(help)));
     }
     Ok(image)
+}
+
+/// A line of help for pixels outside the image: what would bring all of them into it.
+fn pixels_otherwise(stated: [&Image<u32>; 2], [width, height]: [u32; 2]) -> Option<String> {
+    let pairs = || {
+        stated[0].cells().iter().zip(stated[1].cells()).filter(|(i, j)| (**i, **j) != (u32::MAX, u32::MAX))
+    };
+    if pairs().all(|(i, j)| *j < width && *i < height) {
+        return Some("pixel.I is the column and pixel.J the row: they are exchanged".into());
+    }
+    let from_1 = |one: u32, count: u32| (1..=count).contains(&one);
+    pairs()
+        .all(|(i, j)| from_1(*i, width) && from_1(*j, height))
+        .then(|| "columns and rows count from 0, and not from 1".into())
+}
+
+/// A line of help for a map of lengths with negative ones: many of one number may mean "no hit", many numbers are lengths.
+fn negative_lengths(reals: Reals<'_>, lengths: &Image<Maybe<f64>>, first: f64) -> String {
+    let is_other = |cell: &Maybe<f64>| cell.get().is_some_and(|length| length < 0.0 && length != first);
+    if lengths.cells().iter().any(is_other) {
+        "lengths are positive in the direction in which the sensor looks: a camera that looks along -z writes -z".into()
+    } else {
+        declare_miss(first, reals.channel.storage)
+    }
 }
 
 /// A line of help for a number that may mean "no hit".

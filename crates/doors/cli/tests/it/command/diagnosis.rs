@@ -99,6 +99,54 @@ fn a_number_for_no_hit_without_faces_is_refused_or_named() {
 }
 
 #[test]
+fn negative_depths_are_refused_with_the_remedy() {
+    let folder = folder("pyramids");
+    camera_alone(folder.path());
+    edit(&folder, "camera.exr", |map| {
+        let cells = reals(map, "depth.Z").cells_mut();
+        cells.iter_mut().filter(|x| x.is_finite()).for_each(|x| *x = -*x);
+    });
+    // Many numbers mean no "no hit".
+    let output = check(folder.path(), "pyramids", &[]);
+    assert_trouble(&output, &["no negative length", "a camera that looks along -z writes -z"]);
+    assert!(!text(&output.stderr).contains("--miss"), "{}", text(&output.stderr));
+}
+
+#[test]
+fn pixels_outside_the_image_are_refused_with_the_remedy() {
+    let stated = |change: &dyn Fn(u32, u32) -> (u32, u32)| {
+        let folder = folder("pyramids");
+        edit(&folder, "beam-0.exr", |map| {
+            let [columns, rows] = ["pixel.I", "pixel.J"].map(|name| {
+                let Some(Raster::U32(image)) = map.channels.get(name) else { panic!("no {name}") };
+                image.clone()
+            });
+            for (name, is_row) in [("pixel.I", false), ("pixel.J", true)] {
+                let Some(Raster::U32(image)) = map.channels.get_mut(name) else { panic!("no {name}") };
+                let pairs = columns.cells().iter().zip(rows.cells());
+                for (cell, (i, j)) in
+                    image.cells_mut().iter_mut().zip(pairs).filter(|(_, (i, _))| **i != u32::MAX)
+                {
+                    let (column, row) = change(*i, *j);
+                    *cell = if is_row { row } else { column };
+                }
+            }
+        });
+        check(folder.path(), "pyramids", &[])
+    };
+    assert_passes(&stated(&|i, j| (i, j)));
+    assert_trouble(
+        &stated(&|i, j| (i + 1, j + 1)),
+        &["expected a pixel of the camera's", "count from 0, and not from 1"],
+    );
+    assert_trouble(&stated(&|i, j| (j, i)), &["expected a pixel of the camera's", "they are exchanged"]);
+    // Neither would do.
+    let output = stated(&|i, j| (i + 1000, j));
+    assert_trouble(&output, &["expected a pixel of the camera's"]);
+    assert!(!text(&output.stderr).contains("help"), "{}", text(&output.stderr));
+}
+
+#[test]
 fn faces_of_an_own_order_are_named_and_can_be_left_out() {
     let folder = folder("pyramids");
     camera_alone(folder.path());

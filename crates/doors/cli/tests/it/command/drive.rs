@@ -152,6 +152,10 @@ fn errors_leave_no_folder_that_looks_complete() {
         &["gap=paper or gap=mended"],
     );
     assert_trouble(
+        &raypencil(path, &["drive", "small.toml", "--rule", "gap=paper", "--rule", "gap=mended"]),
+        &["--rule gap is given twice"],
+    );
+    assert_trouble(
         &raypencil(path, &["drive", "small.toml", "--at", "100,0"]),
         &["no ground under the vehicle"],
     );

@@ -183,6 +183,39 @@ fn a_pack_is_not_mixed_with_maps() {
 }
 
 #[test]
+fn a_run_does_not_remove_what_it_reads() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    scene(folder, 1);
+    let drive = ["drive", "scene.toml", "--to", "0.3,0", "-o", "out"];
+    screen(folder, &[&drive[..], &["--record", "points"]].concat(), 0);
+    let stripes = folder.join("out/recording/stripes.npy");
+    assert!(stripes.exists());
+    let read = ["--stripes", "out/recording"];
+    assert_trouble(
+        &raypencil(folder, &[&drive[..], &read].concat()),
+        &["out/recording: an earlier run has made it in the output folder out", "expected another folder"],
+    );
+    // All is as it was, and elsewhere it is what was asked for.
+    assert!(stripes.exists() && folder.join("out/summary.json").exists());
+    screen(folder, &[&drive[..5], &["other"], &read[..]].concat(), 0);
+    screen(folder, &drive, 0);
+    assert!(!stripes.exists(), "of an earlier run, and read by none");
+}
+
+#[test]
+fn a_pack_is_not_written_over_the_scene_that_it_is_made_of() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    scene(folder, 1);
+    screen(folder, &["pack", "scene.toml", "--no-bench", "-o", "pack"], 0);
+    let before = fs::read(folder.join("pack/manifest.json")).unwrap();
+    let words = ["pack", "pack/scene.toml", "--no-bench", "-o", "pack", "--force"];
+    assert_trouble(&raypencil(folder, &words), &["pack/scene.toml: an earlier run has made it"]);
+    assert_eq!(fs::read(folder.join("pack/manifest.json")).unwrap(), before);
+}
+
+#[test]
 fn a_folder_that_cannot_be_written_is_found_before_anything_is_computed() {
     let folder = TempDir::new().unwrap();
     let folder = folder.path();

@@ -52,14 +52,6 @@ pub const MISTAKES: &[Make] = &[
             Mistake::Affine { of: Length::Depth, factor: 1.0 / axis, offset: 0.0 },
         ]
     }),
-    ("lengths negated", |m| {
-        m.lengths(Length::All, |_, _, x| -x);
-        parts(Length::All).map(Mistake::LengthsNegated).collect()
-    }),
-    ("depth negated", |m| {
-        m.lengths(Length::Depth, |_, _, x| -x);
-        vec![Mistake::LengthsNegated(Length::Depth)]
-    }),
     ("inverse depth", |m| {
         m.lengths(Length::Depth, |_, _, x| 1.0 / x);
         vec![Mistake::Inverse(Length::Depth)]
