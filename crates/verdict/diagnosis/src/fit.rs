@@ -218,6 +218,16 @@ fn axes(case: Case<'_>, places: &[Place], base: Option<&Correction>) -> Vec<Corr
         channels.is_empty() || off(channels, Some(turn)) < off(channels, None)
     };
     if let Some((turn, _)) = best(&both).filter(|(turn, _)| helps(*turn, &points) && helps(*turn, &normals)) {
+        // Of vectors that are not given nothing is said.
+        let given = match (points.is_empty(), normals.is_empty()) {
+            (false, true) => Vectors::Points,
+            (true, false) => Vectors::Normals,
+            _ => Vectors::Both,
+        };
+        let turn = match turn {
+            Mistake::Axes { from, sign, .. } => Mistake::Axes { of: given, from, sign },
+            by_gltf => by_gltf,
+        };
         return vec![turn.into()];
     }
     let alone = |(of, channels): (Vectors, &Vec<Channel>)| {

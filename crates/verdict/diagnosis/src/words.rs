@@ -62,10 +62,10 @@ impl fmt::Display for Mistake {
                 write!(f, "lengths are in {name}: the unit is the metre")
             }
             Self::AxesYUp => f.write_str(
-                "points and normals are in glTF's axes (y up): the scene is z up, (x, y, z) = (gx, -gz, gy)",
+                "the axes are glTF's (y up): the scene is z up, (x, y, z) = (gx, -gz, gy)",
             ),
             Self::AxesYUpInverse => f.write_str(
-                "points and normals are in the axes (x, -z, y): the change from glTF's y up was made twice",
+                "the axes are (x, -z, y): the change from glTF's y up was made twice",
             ),
             Self::Axes { of, from, sign } => {
                 let what = match of {

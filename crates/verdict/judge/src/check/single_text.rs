@@ -11,6 +11,10 @@ impl CheckedRay {
     pub fn text(&self, name: &str) -> String {
         let Some(class) = self.class else { return format!("  {name} (candidate): not given\n") };
         let mut text = format!("  {name} (candidate): {} ({})\n", class_words(class), self.ruling);
+        // What comes back of a pencil is judged as its own visibility says, so that one mistake counts once.
+        let is_seen_otherwise = self.items.iter().any(|of| {
+            of.item.quantity == Quantity::Visible && of.said.as_ref().is_some_and(|said| *said != of.truth)
+        });
         for of in &self.items {
             let quantity = name_of(of.item);
             let Some(said) = &of.said else {
@@ -30,7 +34,11 @@ impl CheckedRay {
                 Quantity::PixelFlux => "judged by all pencils that land there",
                 _ => "not compared",
             };
-            let _ = writeln!(text, ": {}", of.class.map_or(without_class, class_words));
+            let is_of_own = is_seen_otherwise
+                && of.item.quantity == Quantity::PencilFlux
+                && of.class.is_some_and(|class| class < Class::Undecided);
+            let of_own = if is_of_own { " with its own visibility" } else { "" };
+            let _ = writeln!(text, ": {}{of_own}", of.class.map_or(without_class, class_words));
         }
         if !self.what.is_empty() {
             let _ = writeln!(text, "    {}", self.what);

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use raypencil_judge::{
     ApproximationTally, Attributions, Class, GroundTruth, Item, Judge, JudgeShare, Quantity, Recorded,
-    SensorResult, Side, check, class_of_ray, compare, compare_judged, item_of_channel, listed_defects,
-    range_bound,
+    SensorResult, Side, check, check_ray, class_of_ray, compare, compare_judged, item_of_channel,
+    listed_defects, range_bound,
 };
 use raypencil_referee::ExactRenderer;
 use raypencil_scene::{
@@ -798,4 +798,27 @@ fn a_right_pixel_stays_right_where_its_pencils_are_wrong() {
 
 fn image_of(output: &RenderOutput) -> &[f64] {
     output.flux[0].cells()
+}
+
+#[test]
+fn flux_that_follows_from_a_wrong_visibility_is_said_to() {
+    let scene = walls(FluxModel::Radiometric);
+    let mut output = exact(&scene);
+    let seen = returns(&mut output).visible.clone().unwrap();
+    let (i, j) = (0..seen.height())
+        .flat_map(|j| (0..seen.width()).map(move |i| (i, j)))
+        .find(|(i, j)| seen.at(*i, *j))
+        .expect("a pencil that is seen");
+    let text = |output: &RenderOutput| {
+        let recorded = Recorded::of_output("mine", &scene, output, Precision::F64);
+        check_ray(&scene, &recorded, Place { sensor: SensorId::Beam(0), i, j }).unwrap().text("mine")
+    };
+    assert!(!text(&output).contains("with its own visibility"));
+    // Hidden, and so dark: the visibility alone is wrong.
+    returns(&mut output).visible.as_mut().unwrap().set(i, j, false);
+    returns(&mut output).flux.as_mut().unwrap().set(i, j, 0.0);
+    let hidden = text(&output);
+    assert!(hidden.contains("pencil flux: says 0"), "{hidden}");
+    assert_eq!(hidden.matches(": agrees with its own visibility").count(), 1, "{hidden}");
+    assert_eq!(hidden.matches(": defect\n").count(), 1, "{hidden}");
 }

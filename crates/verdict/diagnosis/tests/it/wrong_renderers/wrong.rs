@@ -78,7 +78,8 @@ impl Wrong {
                 reason.mistakes.iter().all(|told| {
                     let of_sensor = self.truth.iter().filter(|(of, _)| of == sensor);
                     of_sensor.clone().flat_map(|(_, all)| all).any(|one| is_same(one, told))
-                        || is_sum(of_sensor.map(|(_, all)| all.as_slice()), told)
+                        || is_sum(of_sensor.clone().map(|(_, all)| all.as_slice()), told)
+                        || is_turn_of_all(of_sensor.map(|(_, all)| all.as_slice()), told)
                 })
             })
         };
@@ -104,6 +105,24 @@ fn is_sum<'m>(made: impl Iterator<Item = &'m [Mistake]>, told: &Mistake) -> bool
         sum = [sum[0] + dx, sum[1] + dy];
     }
     cells_off(told).is_some_and(|told| (0..2).all(|k| (told[k] - sum[k]).abs() < 1e-3))
+}
+
+/// Whether what is told is the turn that several changes of axes come to.
+fn is_turn_of_all<'m>(made: impl Iterator<Item = &'m [Mistake]>, told: &Mistake) -> bool {
+    let plain = |mistake: &Mistake| match mistake {
+        Mistake::AxesYUp => Some(([0, 2, 1], [1, -1, 1])),
+        Mistake::AxesYUpInverse => Some(([0, 2, 1], [1, 1, -1])),
+        Mistake::Axes { from, sign, .. } => Some((*from, *sign)),
+        _ => None,
+    };
+    // Component k of what it was is `sign` times component `from` of what it became.
+    let scene = [1.0, 2.0, 3.0];
+    let mut stated = scene;
+    for (from, sign) in made.filter_map(|all| all.iter().find_map(plain)) {
+        let was = stated;
+        (0..3).for_each(|k| stated[from[k]] = f64::from(sign[k]) * was[k]);
+    }
+    plain(told).is_some_and(|(from, sign)| (0..3).all(|k| f64::from(sign[k]) * stated[from[k]] == scene[k]))
 }
 
 /// Whether two mistakes are the same with nearly the same numbers: of numbers that were found, a hundredth may be missing.
