@@ -67,11 +67,15 @@ pub(super) enum Walk {
     AllFaces,
 }
 
-/// The power of two from which `size` is less than a factor of two away, upward; within limits that keep all numbers
-/// finite.
-fn power_of_two_above(size: f64) -> f64 {
+/// The least exponents of two by which a mesh and a direction are divided, so that all numbers stay finite: a direction's largest
+/// component is 1e-270 at least, which is above 2^-900.
+const LEAST_OF_MESH: i32 = -300;
+const LEAST_OF_DIRECTION: i32 = -900;
+
+/// The power of two from which `size` is less than a factor of two away, upward; not below 2^least, nor above 2^300.
+fn power_of_two_above(size: f64, least: i32) -> f64 {
     let exponent = if size > 0.0 { libm::frexp(size).1 } else { 0 };
-    libm::scalbn(1.0, exponent.clamp(-300, 300))
+    libm::scalbn(1.0, exponent.clamp(least, 300))
 }
 
 impl Frame {
@@ -79,7 +83,7 @@ impl Frame {
         let [low, high] = mesh.bounds().unwrap_or([DVec3::ZERO; 2]);
         // Halved before they are added, so that no sum overflows.
         let (middle, half) = (low * 0.5 + high * 0.5, high * 0.5 - low * 0.5);
-        let scale = 1.0 / power_of_two_above(half.max_element());
+        let scale = 1.0 / power_of_two_above(half.max_element(), LEAST_OF_MESH);
         let largest = low.abs().max(high.abs()).max_element() * scale;
         let padding = 9.0 * U * (1.0 + MAX_WAY) + MAX_ENTRY_ERROR + FEW_ROUNDINGS * largest;
         let half_width = half * scale + DVec3::splat(2.0 * padding);
@@ -97,7 +101,7 @@ impl Frame {
 
     /// A ray in this frame.
     pub(super) fn ray(&self, given: &CastRay) -> ScaledRay {
-        let shrink = 1.0 / power_of_two_above(given.direction.abs().max_element());
+        let shrink = 1.0 / power_of_two_above(given.direction.abs().max_element(), LEAST_OF_DIRECTION);
         let ray = TracedRay::new(given.origin * self.scale, given.direction * shrink);
         // o + t d, scaled: o scale + (t scale / shrink) (d shrink).
         let t_per_t = shrink / self.scale;

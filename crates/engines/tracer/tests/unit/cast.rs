@@ -144,3 +144,19 @@ fn a_hit_has_the_values_of_its_face_as_it_is_in_the_file() {
     assert_eq!((hit.side, hit.normal, hit.cos_incidence), (Side::Back, DVec3::Z, -1.0));
     assert_eq!(cast.traverser().first(&ray, Sides::Fronts), None);
 }
+
+#[test]
+fn the_shortest_and_the_longest_direction_meet_the_largest_and_a_small_mesh() {
+    for size in [1e30, 1.0, 1e-30] {
+        let corners =
+            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, -1.0, 0.0]].map(|corner| corner.map(|x| x * size));
+        let mesh = Triangles::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
+        let cast = TracerCast::new(&mesh);
+        for length in [1e-270, 1e-245, 1e-200, 1.0, 1e30] {
+            let ray = CastRay::new(DVec3::new(0.0, 0.0, size), DVec3::new(0.0, 0.0, -length));
+            let hit = cast.traverser().first(&ray, Sides::Both).map(|hit| (hit.face, hit.t));
+            let Some((FaceId(0), t)) = hit else { panic!("{size:e} {length:e}: {hit:?}") };
+            assert!((t / (size / length) - 1.0).abs() < 1e-12, "{size:e} {length:e}: {t:e}");
+        }
+    }
+}
