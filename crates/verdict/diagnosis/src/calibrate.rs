@@ -198,8 +198,8 @@ fn is_small(scene: &Scene, sensor: SensorId, numbers: &Numbers) -> bool {
         && is_factor(numbers.focal)
         && is_factor(numbers.fan)
         && numbers.pitch.iter().all(|one| is_factor(*one))
-        // A beam may be taken for a plane: then the factor is 0 up to rounding.
-        && (-1e-6..=MAX_FACTOR).contains(&numbers.thickness)
+        // A beam may be taken for a plane: then the factor is 0 up to rounding. It is thin, so that twice as much is little.
+        && (-1e-6..=2.0 * MAX_FACTOR).contains(&numbers.thickness)
         && numbers.turn.length() <= MAX_TURN
         && numbers.shift.length() <= MAX_SHIFT
 }
@@ -378,7 +378,8 @@ fn told(scene: &Scene, sensor: SensorId, fit: &Fit) -> Option<(Mistake, Rules)> 
             let SensorId::Beam(beam) = sensor else { return None };
             let truth = scene.beams()[beam].sensor.thickness;
             let (factor, uncertainty) = off(Thickness)?;
-            let stated = plainest(1e3 * truth * factor, 1e3 * truth * uncertainty) / 1e3;
+            // 0 in place of -0.
+            let stated = plainest(1e3 * truth * factor, 1e3 * truth * uncertainty) / 1e3 + 0.0;
             numbers.thickness = stated / truth;
             Mistake::Thickness { stated, truth }
         }

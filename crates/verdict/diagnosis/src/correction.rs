@@ -64,7 +64,7 @@ impl Correction {
             | Mistake::SensorFrame => matches!(hit, Some(H::Point | H::Normal)),
             Mistake::Axes { of: Vectors::Points, .. } => hit == Some(H::Point),
             Mistake::Axes { of: Vectors::Normals, .. } => hit == Some(H::Normal),
-            Mistake::GlobalFrame => hit == Some(H::Point),
+            Mistake::GlobalFrame | Mistake::PointsFromSensor => hit == Some(H::Point),
             Mistake::NormalsReversed | Mistake::NormalsNotUnit => hit == Some(H::Normal),
             Mistake::CosinesNegated | Mistake::AngleForCosine(_) => is_cosine,
             Mistake::CosinesExchanged(_) => is_cosine && channel.sensor != SensorId::Camera,
@@ -93,7 +93,9 @@ impl Correction {
             Mistake::HoldsBeam(_) => channel.sensor != SensorId::Camera,
             Mistake::BeamFluxExchanged => channel.sensor == SensorId::Camera && is_flux,
             Mistake::VisibleReversed => quantity == Quantity::Visible,
-            Mistake::NoShadowTest => matches!(quantity, Quantity::Visible | Quantity::PencilFlux),
+            Mistake::NoShadowTest | Mistake::HitsVisible => {
+                matches!(quantity, Quantity::Visible | Quantity::PencilFlux)
+            }
             Mistake::Cut { .. } => true,
             _ => false,
         }
@@ -106,12 +108,13 @@ impl Correction {
             Mistake::FacesShifted(_) | Mistake::FacesReordered => 2,
             Mistake::DepthForRange | Mistake::ParameterForRange | Mistake::FromPlane(Length::Range) => 3,
             Mistake::RangeForDepth | Mistake::ParameterForDepth | Mistake::FromPlane(Length::Depth) => 4,
-            Mistake::VisibleReversed | Mistake::NoShadowTest => 12,
+            Mistake::VisibleReversed | Mistake::NoShadowTest | Mistake::HitsVisible => 12,
             Mistake::Unit(_) => 5,
             Mistake::AxesYUp
             | Mistake::AxesYUpInverse
             | Mistake::Axes { .. }
             | Mistake::SensorFrame
+            | Mistake::PointsFromSensor
             | Mistake::GlobalFrame => 6,
             Mistake::CosinesExchanged(_) => 7,
             Mistake::OtherFluxModel | Mistake::AttenuationOn(_) => 8,
@@ -182,12 +185,13 @@ impl Correction {
         | Mistake::Cut { .. }
         | Mistake::HoldsBeam(_)
         | Mistake::BeamFluxExchanged
-        | Mistake::NoShadowTest = self.mistake
+        | Mistake::NoShadowTest
+        | Mistake::HitsVisible
+        | Mistake::VisibleReversed = self.mistake
         {
             return foretold(self.mistake, case, channel, place, value);
         }
         match value {
-            Value::Flag(flag) if self.mistake == Mistake::VisibleReversed => Value::Flag(!flag),
             Value::Nothing | Value::Flag(_) => value,
             Value::Number(number) => Value::Number(self.number(case, channel, place, number)),
             Value::Vector(vector) => Value::Vector(self.vector(case, channel, vector)),
@@ -274,6 +278,10 @@ impl Correction {
         let scene = case.truth.scene();
         let is_point = channel.item.quantity == Quantity::Point;
         let stated = vector.to_array();
+        let pose = || match channel.sensor {
+            SensorId::Camera => scene.camera().scene_from_sensor,
+            SensorId::Beam(beam) => scene.beams()[beam].scene_from_sensor,
+        };
         let turned = |from: [usize; 3], sign: [i8; 3]| {
             DVec3::from_array(std::array::from_fn(|k| f64::from(sign[k]) * stated[from[k]]))
         };
@@ -283,13 +291,9 @@ impl Correction {
             Mistake::AxesYUp => turned([0, 2, 1], [1, -1, 1]),
             Mistake::AxesYUpInverse => turned([0, 2, 1], [1, 1, -1]),
             Mistake::Axes { from, sign, .. } => turned(from, sign),
-            Mistake::SensorFrame => {
-                let pose = match channel.sensor {
-                    SensorId::Camera => scene.camera().scene_from_sensor,
-                    SensorId::Beam(beam) => scene.beams()[beam].scene_from_sensor,
-                };
-                if is_point { pose * vector } else { pose.rotate(vector) }
-            }
+            Mistake::SensorFrame if is_point => pose() * vector,
+            Mistake::SensorFrame => pose().rotate(vector),
+            Mistake::PointsFromSensor => vector + pose().position,
             Mistake::GlobalFrame => vector - scene.mesh().origin(),
             Mistake::NormalsReversed => -vector,
             Mistake::NormalsNotUnit => vector / vector.length(),

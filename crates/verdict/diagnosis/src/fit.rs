@@ -10,6 +10,7 @@ use crate::correction::{Correction, FluxFactors, Table, corrected};
 use crate::lengths::lengths;
 use crate::mistake::{AngleUnit, Cosine, Leg, Length, LengthUnit, Mistake, Vectors};
 use crate::numbers::{middle, plainest};
+use crate::tally::MIN_CONFIRMING_RAYS;
 use raypencil_judge::Quantity;
 use raypencil_scene::{FluxModel, HitQuantity, Image, Place, SensorId};
 
@@ -67,9 +68,13 @@ pub(crate) fn fixed(case: Case<'_>) -> Vec<Correction> {
         Mistake::PixelColumnsFromRight,
         Mistake::PixelsExchanged,
         Mistake::OtherFluxModel,
-        Mistake::VisibleReversed,
         Mistake::NoShadowTest,
+        Mistake::HitsVisible,
+        Mistake::PointsFromSensor,
     ]);
+    if is_reversed_both_ways(case) {
+        mistakes.push(Mistake::VisibleReversed);
+    }
     mistakes.extend(other_beams(case));
     if scene.mesh().origin() != glam::DVec3::ZERO {
         mistakes.push(Mistake::GlobalFrame);
@@ -101,6 +106,23 @@ pub(crate) fn fixed(case: Case<'_>) -> Vec<Correction> {
         quantities.len() > usize::from(one.is_of_all_lengths())
     });
     corrections
+}
+
+/// Whether hidden hits are called visible, and visible ones hidden: else another mistake says the same.
+fn is_reversed_both_ways(case: Case<'_>) -> bool {
+    let mut ways = [0_u64; 2];
+    for channel in case.channels().into_iter().filter(|channel| channel.item.quantity == Quantity::Visible) {
+        for place in rays(case, channel.sensor).filter(|place| case.truth.hit(*place).is_some()) {
+            let [stated, exact] =
+                [&case.recorded.answers, case.truth.answers()].map(|answers| channel.at(answers, place));
+            if let (Value::Flag(stated), Value::Flag(exact)) = (stated, exact)
+                && stated != exact
+            {
+                ways[usize::from(stated)] += 1;
+            }
+        }
+    }
+    ways.iter().all(|count| *count >= MIN_CONFIRMING_RAYS)
 }
 
 /// The beams whose answers the sensor that is asked about may hold: those with as many cells.

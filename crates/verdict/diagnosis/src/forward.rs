@@ -54,8 +54,17 @@ pub(crate) fn foretold(
             let other = Channel { item, ..channel }.at(case.truth.answers(), place);
             is_near(case, channel, place, stated, other)
         }
-        Mistake::NoShadowTest => {
-            let is_hidden = would_be_seen(case, place) && !case.truth.visibility(place).0;
+        // At a miss nothing is seen, whatever is said.
+        Mistake::VisibleReversed => match (stated, exact) {
+            (Value::Flag(stated), Value::Flag(exact)) => stated != exact || case.truth.hit(place).is_none(),
+            _ => return stated,
+        },
+        Mistake::NoShadowTest | Mistake::HitsVisible => {
+            let is_asked = match mistake {
+                Mistake::NoShadowTest => would_be_seen(case, place),
+                _ => case.truth.hit(place).is_some(),
+            };
+            let is_hidden = is_asked && !case.truth.visibility(place).0;
             match (stated, is_hidden) {
                 (_, false) => return stated,
                 // A hit that is hidden, and said to be, speaks against it.

@@ -196,6 +196,8 @@ pub enum Mistake {
     },
     /// Points and normals are in the sensor's frame.
     SensorFrame,
+    /// Points are counted from the sensor, in the axes of the scene.
+    PointsFromSensor,
     /// Points are in the global frame: the scene origin is added.
     GlobalFrame,
     /// A length is one over the true one.
@@ -208,6 +210,8 @@ pub enum Mistake {
     VisibleReversed,
     /// No face hides a hit from the camera.
     NoShadowTest,
+    /// Every hit is called visible.
+    HitsVisible,
     /// The camera's flux is the sum of what the pencils of the recording state, and these are wrong.
     FluxOfWrongPencils,
     /// Normals point inward.
@@ -373,12 +377,14 @@ impl Mistake {
             Self::AxesYUpInverse => "axes_y_up_inverse",
             Self::Axes { .. } => "axes",
             Self::SensorFrame => "sensor_frame",
+            Self::PointsFromSensor => "points_from_sensor",
             Self::GlobalFrame => "global_frame",
             Self::Inverse(_) => "inverse",
             Self::HoldsBeam(_) => "other_beam",
             Self::BeamFluxExchanged => "beam_flux_exchanged",
             Self::VisibleReversed => "visible_reversed",
             Self::NoShadowTest => "no_shadow_test",
+            Self::HitsVisible => "hits_visible",
             Self::FluxOfWrongPencils => "flux_of_wrong_pencils",
             Self::NormalsReversed => "normals_reversed",
             Self::NormalsNotUnit => "normals_not_unit",
@@ -445,6 +451,7 @@ impl Mistake {
             | Self::ParameterForDepth
             | Self::Unit(_)
             | Self::SensorFrame
+            | Self::PointsFromSensor
             | Self::GlobalFrame
             | Self::NormalsReversed
             | Self::NormalsNotUnit
@@ -457,7 +464,9 @@ impl Mistake {
             | Self::HoldsBeam(_)
             | Self::BeamFluxExchanged
             | Self::VisibleReversed => (FILES, "Maps: OpenEXR"),
-            Self::NoShadowTest | Self::FluxOfWrongPencils => (LIGHT, "Pixel and visibility"),
+            Self::NoShadowTest | Self::HitsVisible | Self::FluxOfWrongPencils => {
+                (LIGHT, "Pixel and visibility")
+            }
             Self::OtherFluxModel | Self::AttenuationOn(_) | Self::FluxFactor(_) => (LIGHT, "radiometric"),
             Self::SinglePrecision => (GUIDE, "raypencil check"),
             Self::BacksHit | Self::NearPlaneIgnored | Self::MaximumRangeIgnored => {

@@ -84,6 +84,9 @@ impl fmt::Display for Mistake {
             Self::SensorFrame => {
                 f.write_str("points and normals are in the sensor's frame: they belong in the scene frame")
             }
+            Self::PointsFromSensor => {
+                f.write_str("points are counted from the sensor: they are counted from the scene's origin")
+            }
             Self::GlobalFrame => {
                 f.write_str("points are in the global frame: the scene frame starts at the scene origin")
             }
@@ -101,6 +104,9 @@ impl fmt::Display for Mistake {
             Self::NoShadowTest => f.write_str(
                 "no face hides a hit from the camera: what lies between them hides it (a shadow test is missing)",
             ),
+            Self::HitsVisible => {
+                f.write_str("every hit is called visible: a hit may be hidden, turned away, or beside the image")
+            }
             Self::FluxOfWrongPencils => {
                 f.write_str("the pencils of the beams were right: the flux is the sum of what they state")
             }

@@ -1,6 +1,6 @@
 //! Mistakes in the light of pencils alone: what they meet is right.
 
-use raypencil_judge::Recorded;
+use raypencil_judge::{Quantity, Recorded};
 use raypencil_scene::{Image, Maybe, SensorId};
 
 use super::candidates::*;
@@ -62,6 +62,37 @@ fn hits_that_nothing_hides_are_a_missing_shadow_test() {
     }
     let told = bench.reasons(&all);
     assert!(told.iter().all(|one| !one.contains("no_shadow_test")), "{told:?}");
+}
+
+#[test]
+fn visible_hits_alone_are_not_taken_for_a_reversed_flag() {
+    let bench = pyramids();
+    let mut candidate = bench.exact.clone();
+    candidate.storage.retain(|(_, item), _| !item.is_other_model);
+    for beam in 0..2 {
+        let returns = &bench.exact.answers.light[beam].returns;
+        for (i, j) in cells(returns.visible.as_ref().unwrap()) {
+            let is_hit = returns.cos_view.as_ref().unwrap().at(i, j).get().is_some();
+            visible(&mut candidate, beam).set(i, j, is_hit);
+        }
+    }
+    // Flux and image stay: a pencil that is called visible should have some, and it is told that it has none.
+    candidate.storage.retain(|(_, item), _| item.quantity == Quantity::Visible);
+    let told = bench.reasons(&candidate);
+    assert!(!told.is_empty() && told.iter().all(|one| !one.contains("visible_reversed")), "{told:?}");
+
+    // Seen ones are called hidden, and misses are left as they are.
+    let mut hidden = bench.exact.clone();
+    for beam in 0..2 {
+        let returns = &bench.exact.answers.light[beam].returns;
+        for (i, j) in cells(returns.visible.as_ref().unwrap()) {
+            if returns.cos_view.as_ref().unwrap().at(i, j).get().is_some() {
+                let seen = returns.visible.as_ref().unwrap().at(i, j);
+                visible(&mut hidden, beam).set(i, j, !seen);
+            }
+        }
+    }
+    assert_eq!(bench.reasons(&hidden), ["beam-0, beam-1: visible_reversed"]);
 }
 
 #[test]

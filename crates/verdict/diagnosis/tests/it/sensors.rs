@@ -15,7 +15,7 @@ const CAMERA: SensorId = SensorId::Camera;
 const BEAM: SensorId = SensorId::Beam(1);
 
 /// Mistakes in the camera, and the key by which each is told.
-const TABLE: [(&str, &str); 24] = [
+const TABLE: [(&str, &str); 25] = [
     ("last row lost", "lines_lost"),
     ("last row 0", "lines_lost"),
     ("last row twice", "line_doubled"),
@@ -40,6 +40,7 @@ const TABLE: [(&str, &str); 24] = [
     ("inverse depth", "inverse"),
     ("points' axes", "axes"),
     ("normals' axes", "axes"),
+    ("points from the sensor", "points_from_sensor"),
 ];
 
 /// The same in a beam.

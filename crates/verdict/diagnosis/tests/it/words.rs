@@ -38,6 +38,8 @@ fn all() -> Vec<Mistake> {
         Mistake::BeamFluxExchanged,
         Mistake::VisibleReversed,
         Mistake::NoShadowTest,
+        Mistake::HitsVisible,
+        Mistake::PointsFromSensor,
         Mistake::FluxOfWrongPencils,
         Mistake::PixelPitch { stated: [4e-5; 2], truth: [3.84e-5, 4e-5] },
         Mistake::Thickness { stated: 0.0, truth: 0.02 },

@@ -86,6 +86,11 @@ pub const MISTAKES: &[Make] = &[
         m.vectors(false, |_, _, n| pose.inverse().rotate(n));
         if pose == Pose::IDENTITY { Vec::new() } else { vec![Mistake::SensorFrame] }
     }),
+    ("points from the sensor", |m| {
+        let position = m.pose().position;
+        m.vectors(true, |_, _, p| p - position);
+        if position == DVec3::ZERO { Vec::new() } else { vec![Mistake::PointsFromSensor] }
+    }),
     ("normals inward", |m| {
         m.vectors(false, |_, _, n| -n);
         vec![Mistake::NormalsReversed]

@@ -392,7 +392,15 @@ fn clipped(making: &mut Making<'_>, by: CutBy, is_above: bool, share: f64, clamp
         return Vec::new();
     }
     all.sort_by(f64::total_cmp);
-    let at = all[((all.len() - 1) as f64 * share) as usize];
+    let index = ((all.len() - 1) as f64 * share) as usize;
+    let at = all[index];
+    // No hit lies between this one and the next that is lost: any number between them is as true.
+    let lost = if is_above {
+        all[index..].iter().find(|x| **x > at)
+    } else {
+        all[..index].iter().rfind(|x| **x < at)
+    };
+    let next = lost.copied().unwrap_or(at);
     for (i, j) in making.cells() {
         if let Some(length) = lengths.at(i, j).get()
             && (if is_above { length > at } else { length < at })
@@ -406,5 +414,7 @@ fn clipped(making: &mut Making<'_>, by: CutBy, is_above: bool, share: f64, clamp
         }
     }
     let held = if clamps { Held::Constant(at) } else { Held::NoHit };
-    vec![Mistake::Cut { by, is_above, at, lines: 0, held }]
+    let between = |k: u32| at + (next - at) * f64::from(k) / 16.0;
+    let ends = if clamps { 0..=0 } else { 0..=16 };
+    ends.map(|k| Mistake::Cut { by, is_above, at: between(k), lines: 0, held }).collect()
 }
