@@ -23,9 +23,10 @@ use std::cmp::Ordering;
 
 use raypencil_scene::{CastRay, FaceId, Side, Sides};
 
+use super::ExactCast;
+use super::quads::Next;
 use super::query_ray::{Polynomial, QueryRay, RayNumbers};
 use super::triangle::{Met, Triangle};
-use super::{ExactCast, bundle};
 use crate::number::Number;
 
 /// A face that is met, and the side that is.
@@ -51,13 +52,13 @@ impl ExactCast<'_> {
     /// All faces that the ray meets, in the exact order of t, grouped where t is the same. With
     /// [`Sides::Fronts`], only groups with a front are listed, and only fronts in them.
     pub fn all(&self, ray: &CastRay, sides: Sides) -> Vec<HitGroup> {
-        let (query, bundle) = (QueryRay::new(ray), bundle(ray));
+        let query = QueryRay::new(ray);
         let mut met: Vec<(&Triangle, Side, [f64; 2])> = Vec::new();
-        self.tree.bvh.visit(&bundle, |face| {
+        self.walk(ray, |face| {
             if let Some(Met { side, t }) = face.met(&query, Sides::Both) {
                 met.push((face, side, [t.low, t.high]));
             }
-            bundle.max_range
+            Next::On
         });
         // By the intervals of t where these are apart, else exactly.
         let order = |(a, _, of_a): &(&Triangle, Side, [f64; 2]),

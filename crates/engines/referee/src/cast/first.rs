@@ -2,14 +2,13 @@
 
 use std::cmp::Ordering;
 
-use raypencil_scene::{CastRay, FaceId, Reading, Sides};
+use raypencil_scene::{CastRay, FaceId, Reading, Side, Sides};
 
+use super::quads::Next;
 use super::query_ray::QueryRay;
 use super::triangle::{Met, Triangle};
 use super::values::CastMeeting;
-use super::{ExactCast, bundle, moved_bundle};
-use crate::bvh::{RayBundle, Traversal};
-use crate::number::Interval;
+use super::{ExactCast, moved_bundle, walk_bundle};
 
 impl ExactCast<'_> {
     /// The faces met at the smallest t, in ascending order: several if they are met at exactly the same t, none if the
@@ -61,13 +60,14 @@ impl ExactCast<'_> {
     /// ```
     pub fn first_meeting<'r>(&self, ray: &'r CastRay, sides: Sides) -> Reading<(CastMeeting<'r>, u32)> {
         let query = QueryRay::new(ray);
-        let nearest = self.nearest_of(&query, &bundle(ray), sides);
-        let Some(&face) = nearest.first() else { return Reading::Miss };
+        let mut nearest = Nearest::new(&query, sides);
+        self.walk(ray, |face| nearest.see(face));
+        let Some((face, side)) = nearest.lowest() else { return Reading::Miss };
         if ray.t_blind > 0.0 && face.is_before(ray.t_blind, &query) {
             return Reading::TooNear;
         }
-        let side = face.seen_side(&query).expect("a face that is met is not parallel");
-        Reading::Hit((CastMeeting::new(ray, query, *face, side), nearest.len() as u32))
+        let ties = nearest.count() as u32;
+        Reading::Hit((CastMeeting::new(ray, query, *face, side), ties))
     }
 
     /// What the ray's sensor reads of the nearest faces.
@@ -98,55 +98,86 @@ impl ExactCast<'_> {
     /// ```
     pub fn first_moved(&self, ray: &CastRay, sides: Sides, by: [f64; 2]) -> Vec<FaceId> {
         let query = QueryRay::moved(ray, by);
-        self.nearest_of(&query, &moved_bundle(ray, by), sides).iter().map(|face| face.id).collect()
+        let mut nearest = Nearest::new(&query, sides);
+        walk_bundle(&self.tree.bvh, &moved_bundle(ray, by), ray, |face| nearest.see(face));
+        nearest.sorted().iter().map(|face| face.id).collect()
     }
 
     /// Whether the ray meets anything.
     pub fn any(&self, ray: &CastRay, sides: Sides) -> bool {
-        let (query, bundle) = (QueryRay::new(ray), bundle(ray));
-        let mut walk = Traversal::new(&self.tree.bvh, &bundle);
-        while let Some(leaf) = walk.next_leaf(bundle.max_range) {
-            if leaf.iter().any(|face| face.met_side(&query, sides).is_some()) {
-                return true;
-            }
-        }
-        false
+        let query = QueryRay::new(ray);
+        let mut is_met = false;
+        self.walk(ray, |face| {
+            is_met = is_met || face.met_side(&query, sides).is_some();
+            if is_met { Next::Stop } else { Next::On }
+        });
+        is_met
     }
 
     /// The nearest faces, in ascending order.
     pub(super) fn nearest(&self, ray: &CastRay, sides: Sides) -> Vec<&Triangle> {
-        self.nearest_of(&QueryRay::new(ray), &bundle(ray), sides)
+        let query = QueryRay::new(ray);
+        let mut nearest = Nearest::new(&query, sides);
+        self.walk(ray, |face| nearest.see(face));
+        nearest.sorted()
+    }
+}
+
+/// The nearest of the faces that a ray meets.
+struct Nearest<'q, 's> {
+    query: &'q QueryRay<'q>,
+    sides: Sides,
+    /// One of them, and how it is met.
+    first: Option<(&'s Triangle, Met)>,
+    /// The others at exactly its t.
+    others: Vec<(&'s Triangle, Side)>,
+}
+
+impl<'q, 's> Nearest<'q, 's> {
+    fn new(query: &'q QueryRay<'q>, sides: Sides) -> Self {
+        Self { query, sides, first: None, others: Vec::new() }
     }
 
-    fn nearest_of(&self, query: &QueryRay<'_>, bundle: &RayBundle, sides: Sides) -> Vec<&Triangle> {
-        let mut nearest: Vec<&Triangle> = Vec::new();
-        // What contains the t of all of them.
-        let mut of_nearest = Interval::between(f64::INFINITY, f64::INFINITY);
-        let length = query.fast().direction.length_squared().high.sqrt();
-        let mut farthest = bundle.max_range;
-        self.tree.bvh.visit(bundle, |face| {
-            let Some(Met { t, .. }) = face.met(query, sides) else { return farthest };
-            // By the intervals of t where these are apart, else exactly.
-            let order = match nearest.first() {
-                None => Ordering::Less,
-                Some(_) if t.low > of_nearest.high => Ordering::Greater,
-                Some(_) if t.high < of_nearest.low => Ordering::Less,
-                Some(kept) => face.compare(kept, query),
-            };
-            match order {
-                Ordering::Less => {
-                    nearest.clear();
-                    nearest.push(face);
-                    of_nearest = t;
-                    // From here on only faces up to the nearest matter. Two roundings, each below 2^-52.
-                    farthest = (t.high * length * (1.0 + 8.0 * f64::EPSILON)).min(bundle.max_range);
-                }
-                Ordering::Equal => nearest.push(face),
-                Ordering::Greater => {}
+    /// Looks at a face, in any order.
+    #[inline]
+    fn see(&mut self, face: &'s Triangle) -> Next {
+        let Some(met) = face.met(self.query, self.sides) else { return Next::On };
+        // By the intervals of t where these are apart, else exactly.
+        let order = match &self.first {
+            None => Ordering::Less,
+            Some((_, kept)) if met.t.low > kept.t.high => Ordering::Greater,
+            Some((_, kept)) if met.t.high < kept.t.low => Ordering::Less,
+            Some((kept, _)) => face.compare(kept, self.query),
+        };
+        match order {
+            Ordering::Less => {
+                self.others.clear();
+                self.first = Some((face, met));
+                // From here on only faces up to the nearest matter.
+                return Next::UpTo(met.t.high);
             }
-            farthest
-        });
-        nearest.sort_by_key(|face| face.id);
-        nearest
+            Ordering::Equal => self.others.push((face, met.side)),
+            Ordering::Greater => {}
+        }
+        Next::On
+    }
+
+    fn count(&self) -> usize {
+        usize::from(self.first.is_some()) + self.others.len()
+    }
+
+    /// The face of the lowest index, and the side of it that is met.
+    fn lowest(&self) -> Option<(&'s Triangle, Side)> {
+        let (face, met) = self.first?;
+        let lower = |a: (&'s Triangle, Side), b: (&'s Triangle, Side)| if b.0.id < a.0.id { b } else { a };
+        Some(self.others.iter().copied().fold((face, met.side), lower))
+    }
+
+    /// All of them, in ascending order.
+    fn sorted(&self) -> Vec<&'s Triangle> {
+        let others = self.others.iter().map(|(face, _)| *face);
+        let mut faces: Vec<&Triangle> = self.first.iter().map(|(face, _)| *face).chain(others).collect();
+        faces.sort_by_key(|face| face.id);
+        faces
     }
 }

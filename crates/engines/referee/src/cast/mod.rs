@@ -19,6 +19,7 @@
 //! ```text
 //! query_ray   one ray in both numbers: intervals, and exactly where these are in doubt
 //! triangle    one face, and the conditions above
+//! quads       which faces a ray may meet, four at once
 //! first       the nearest hit with its ties, what a sensor reads of it, and whether anything is hit
 //! all         all hits in exact order, and how often the surface is crossed
 //! values      the values of a hit, correctly rounded
@@ -32,6 +33,7 @@
 mod all;
 mod first;
 mod margin;
+mod quads;
 mod query_ray;
 mod ruling;
 mod triangle;
@@ -45,6 +47,7 @@ use raypencil_scene::{CastRay, FaceId, Triangles};
 
 use crate::bvh::{Bvh, RayBundle};
 use margin::Seams;
+use quads::{Next, Quads};
 use query_ray::QueryRay;
 use triangle::Triangle;
 
@@ -116,6 +119,8 @@ impl CastTree {
 #[derive(Debug)]
 struct Tree {
     bvh: Bvh<Triangle>,
+    /// The same for rays that are not moved.
+    quads: Quads,
     /// The diagonal of the mesh's bounding box, to which margins are capped.
     diagonal: f64,
     /// The largest coordinate of a vertex.
@@ -132,8 +137,10 @@ impl Tree {
             faces.retain(Triangle::has_area);
         }
         let [low, high] = mesh.bounds().unwrap_or_default();
+        let bvh = Bvh::build(faces);
         Self {
-            bvh: Bvh::build(faces),
+            quads: Quads::of(&bvh),
+            bvh,
             diagonal: length(high - low),
             largest_coordinate: low.abs().max(high.abs()).max_element(),
             seams: OnceLock::new(),
@@ -151,10 +158,41 @@ impl<'t> ExactCast<'t> {
         self.tree.seams.get_or_init(|| Seams::of(self.mesh, &self.tree.bvh))
     }
 
+    /// Shows the faces that the ray may meet, and others, nearer ones first, until it is enough.
+    #[inline]
+    fn walk<'s>(&'s self, ray: &CastRay, mut visit: impl FnMut(&'s Triangle) -> Next) {
+        let Tree { bvh, quads, .. } = &*self.tree;
+        match quads.ray(ray) {
+            Some(in_frame) => quads.walk(&in_frame, |place| visit(bvh.face(place))),
+            None => walk_bundle(bvh, &bundle(ray), ray, visit),
+        }
+    }
+
     /// A face of the mesh, if the mesh has it.
     fn triangle(&self, face: FaceId) -> Option<Triangle> {
         ((face.0 as usize) < self.mesh.faces().len()).then(|| Triangle::of(self.mesh, face))
     }
+}
+
+/// [`ExactCast::walk`] for rays of any size, and moved ones.
+#[inline(never)]
+fn walk_bundle<'s>(
+    bvh: &'s Bvh<Triangle>,
+    bundle: &RayBundle,
+    ray: &CastRay,
+    mut visit: impl FnMut(&'s Triangle) -> Next,
+) {
+    let length = QueryRay::length(ray);
+    let mut farthest = bundle.max_range;
+    bvh.visit(bundle, |face| {
+        match visit(face) {
+            Next::On => {}
+            Next::UpTo(t) => farthest = (t * length * RANGE_SLACK).min(farthest),
+            // Nothing is entered so early.
+            Next::Stop => farthest = -1.0,
+        }
+        farthest
+    });
 }
 
 /// The ray for the hierarchy.

@@ -45,7 +45,8 @@ pub(super) struct QueryRay<'r> {
     moved: Option<[f64; 2]>,
     filter: EdgeFilter,
     fast: RayNumbers<Interval>,
-    exact: OnceCell<RayNumbers<Dyadic>>,
+    /// Apart, for it is large and rare.
+    exact: OnceCell<Box<RayNumbers<Dyadic>>>,
 }
 
 impl<'r> QueryRay<'r> {
@@ -90,9 +91,11 @@ impl<'r> QueryRay<'r> {
 
     /// The ray without rounding.
     pub(super) fn exact(&self) -> &RayNumbers<Dyadic> {
-        self.exact.get_or_init(|| match self.moved {
-            Some(by) => RayNumbers::moved(self.ray, by),
-            None => RayNumbers::of(self.ray),
+        self.exact.get_or_init(|| {
+            Box::new(match self.moved {
+                Some(by) => RayNumbers::moved(self.ray, by),
+                None => RayNumbers::of(self.ray),
+            })
         })
     }
 
@@ -104,6 +107,12 @@ impl<'r> QueryRay<'r> {
             count(Path::Filter);
         }
         side
+    }
+
+    /// What contains the t at which the plane of a triangle is met, in plain f64; `None` if too little is certain.
+    #[inline]
+    pub(super) fn t_of_plane(&self, corners: [DVec3; 3]) -> Option<Interval> {
+        self.filter.t_of_plane(corners)
     }
 
     /// The exact sign: by the interval if that is certain, else by exact arithmetic.
@@ -134,8 +143,10 @@ impl<'r> QueryRay<'r> {
 /// How a sign was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Path {
-    /// In plain f64.
+    /// In plain f64, on the side of an edge.
     Filter,
+    /// In plain f64, at an end of the ray.
+    Plane,
     /// In intervals.
     Interval,
     /// In exact arithmetic.
@@ -145,12 +156,12 @@ pub(super) enum Path {
 #[cfg(test)]
 thread_local! {
     /// Signs that this thread found on each [`Path`].
-    pub(super) static PATHS: std::cell::Cell<[u64; 3]> = const { std::cell::Cell::new([0; 3]) };
+    pub(super) static PATHS: std::cell::Cell<[u64; 4]> = const { std::cell::Cell::new([0; 4]) };
 }
 
 /// Counts a path, in tests.
 #[inline]
-fn count(_path: Path) {
+pub(super) fn count(_path: Path) {
     #[cfg(test)]
     PATHS.with(|paths| {
         let mut counts = paths.get();

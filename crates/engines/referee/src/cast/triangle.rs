@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use glam::DVec3;
 use raypencil_scene::{FaceId, Side, Sides, Triangles};
 
-use super::query_ray::{Polynomial, QueryRay, RayNumbers};
+use super::query_ray::{Path, Polynomial, QueryRay, RayNumbers, count};
 use crate::bvh::InBox;
 use crate::number::{Dyadic, Interval, Number};
 use crate::vector::Vector;
@@ -104,6 +104,9 @@ impl Triangle {
             (_, true) => (Side::Back, Ordering::Greater),
             _ => return None,
         };
+        if let Some(met) = self.certainly_met(side, ray) {
+            return met;
+        }
         let (height, approach) = self.height_and_approach(ray.fast());
         let beyond = |t: f64| {
             let fast = if t == 0.0 { height } else { height.sub(&approach.mul(&Interval::of(t))) };
@@ -117,6 +120,21 @@ impl Triangle {
             return None;
         }
         Some(Met { side, t: height.over(approach) })
+    }
+
+    /// How the ray, which passes inside all edges, meets the face, if at all: in plain f64, if both ends of the ray are certain.
+    #[inline]
+    fn certainly_met(&self, side: Side, ray: &QueryRay<'_>) -> Option<Option<Met>> {
+        let t = ray.t_of_plane(self.corners)?;
+        if t.low >= ray.t_min() && t.high <= ray.t_max() {
+            count(Path::Plane);
+            return Some(Some(Met { side, t }));
+        }
+        if t.high < ray.t_min() || t.low > ray.t_max() {
+            count(Path::Plane);
+            return Some(None);
+        }
+        None
     }
 
     /// n.a' and n.d.

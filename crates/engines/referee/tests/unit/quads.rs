@@ -1,0 +1,208 @@
+//! No face that a ray meets is left out, on rays and faces that are hard for f32; and most others are.
+
+use raypencil_scene::{Sides, Triangles};
+
+use super::super::query_ray::QueryRay;
+use super::super::{ExactCast, Tree};
+use super::*;
+use crate::splitmix::SplitMix64;
+
+fn point(random: &mut SplitMix64) -> DVec3 {
+    DVec3::new(random.part(), random.part(), random.part())
+}
+
+/// Triangles of this size anywhere in a cube of 2.
+fn scattered(random: &mut SplitMix64, size: f64) -> Vec<[DVec3; 3]> {
+    (0..300)
+        .map(|_| {
+            let at = point(random);
+            [0; 3].map(|_| at + size * point(random))
+        })
+        .collect()
+}
+
+/// A square of 2 of small whole steps of 1/8, flat, but for a pit.
+fn lattice() -> Vec<[DVec3; 3]> {
+    let corner = |x: i32, y: i32| {
+        let height = if (x - 8).abs() < 3 && (y - 8).abs() < 3 { -0.25 } else { 0.0 };
+        DVec3::new(f64::from(x - 8) / 8.0, f64::from(y - 8) / 8.0, height)
+    };
+    (0..256)
+        .flat_map(|k| {
+            let (x, y) = (k % 16, k / 16);
+            let [a, b, c, d] = [corner(x, y), corner(x + 1, y), corner(x + 1, y + 1), corner(x, y + 1)];
+            [[a, b, c], [a, c, d]]
+        })
+        .collect()
+}
+
+/// Slender faces, which f32 tips over.
+fn slender(random: &mut SplitMix64) -> Vec<[DVec3; 3]> {
+    (0..300)
+        .map(|_| {
+            let (a, b) = (point(random), point(random));
+            [a, b, a.lerp(b, 0.3) + 1e-7 * point(random)]
+        })
+        .collect()
+}
+
+/// A ray at a point of a face: within it, on an edge, or at a corner, each to a few last digits of f32 or f64; from all around,
+/// along an axis or nearly so, some with ends.
+fn aimed(random: &mut SplitMix64, face: [DVec3; 3], far: f64) -> CastRay {
+    let [a, b, c] = face;
+    let along = 0.5 + 0.5 * random.part();
+    let target = match random.below(4) {
+        0 => (a + b + c) / 3.0,
+        1 => a,
+        _ => a.lerp(b, along),
+    };
+    let beside = [0.0, 1e-16, 1e-9, 1e-7, 1e-6][random.below(5) as usize];
+    let target = target + beside * point(random);
+    let direction = match random.below(4) {
+        0 => DVec3::AXES[random.below(3) as usize] * if random.below(2) == 0 { 1.0 } else { -1.0 },
+        1 => {
+            let mut direction = point(random);
+            direction[random.below(3) as usize] *= [1e-20, 1e-31, 1e-90, 1e-300][random.below(4) as usize];
+            direction
+        }
+        _ => point(random),
+    };
+    let t = far * (1.0 + random.part());
+    let ray = CastRay::new(target - direction * t, direction);
+    match random.below(4) {
+        // Their ends are where the face is, or at both sides of it.
+        0 => CastRay { t_min: t, ..ray },
+        1 => CastRay { t_max: t, ..ray },
+        2 => CastRay { t_min: 0.999 * t, t_max: 1.001 * t, ..ray },
+        _ => ray,
+    }
+}
+
+/// The mesh and rays at it, moved and scaled.
+fn moved_and_scaled(faces: &[[DVec3; 3]], by: DVec3, size: f64) -> (Triangles, Vec<[DVec3; 3]>) {
+    let faces: Vec<_> = faces.iter().map(|face| face.map(|corner| (corner + by) * size)).collect();
+    let vertices = faces.iter().flatten().map(DVec3::to_array).collect();
+    let indices = (0..faces.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    (Triangles::new(vertices, indices).expect("triangles"), faces)
+}
+
+#[test]
+fn every_face_that_is_met_is_shown_and_few_others() {
+    let mut random = SplitMix64(3);
+    let families = [
+        ("large", scattered(&mut random, 0.5), 0.3),
+        ("small", scattered(&mut random, 0.02), 0.01),
+        ("lattice", lattice(), 0.1),
+        ("slender", slender(&mut random), 0.1),
+    ];
+    let places = [
+        (DVec3::ZERO, 1.0),
+        (DVec3::new(3e7, -5e6, 1e6), 1.0),
+        (DVec3::ZERO, 1e28),
+        (DVec3::ONE, 1e-40),
+        (DVec3::ZERO, 1e-170),
+    ];
+    for (name, faces, most) in families {
+        for (by, size) in places {
+            let (mesh, faces) = moved_and_scaled(&faces, by, size);
+            let tree = Tree::of(&mesh);
+            let all = tree.bvh.faces_below(0);
+            let (mut shown, mut met, mut asked) = (0, 0, 0);
+            for k in 0..2000 {
+                let far = [0.5, 1.0, 30.0, 3e4][k % 4];
+                let face = faces[random.below(faces.len() as u32) as usize];
+                let unit = aimed(&mut random, face.map(|corner| corner / size), far);
+                let ray = CastRay { origin: unit.origin * size, direction: unit.direction * size, ..unit };
+                if ray.validate("ray").is_err() {
+                    continue;
+                }
+                let Some(in_frame) = tree.quads.ray(&ray) else { continue };
+                asked += 1;
+                let mut places = Vec::new();
+                tree.quads.walk(&in_frame, |place| {
+                    places.push(place as usize);
+                    Next::On
+                });
+                let query = QueryRay::new(&ray);
+                for (place, face) in all.iter().enumerate() {
+                    if face.met_side(&query, Sides::Both).is_some() {
+                        met += 1;
+                        assert!(places.contains(&place), "{name} of {size} at {by}: {face:?} by {ray:?}");
+                    }
+                }
+                // From far away f32 can tell little.
+                shown += if far < 10.0 { places.len() } else { 0 };
+            }
+            assert!(asked > 1000 && met > 300, "{name} of {size} at {by}: {asked} rays, {met} faces met");
+            let share = shown as f64 / (0.5 * asked as f64 * all.len() as f64);
+            assert!(share < most, "{name} of {size} at {by}: {share} of all faces shown");
+        }
+    }
+}
+
+#[test]
+fn a_walk_ends_where_its_visitor_says() {
+    let (mesh, _) = moved_and_scaled(&lattice(), DVec3::ZERO, 1.0);
+    let above = moved_and_scaled(&lattice(), DVec3::new(0.0, 0.0, 1.0), 1.0).0;
+    let vertices = [mesh.vertices(), above.vertices()].concat();
+    let count = mesh.vertices().len() as u32;
+    let faces = mesh.faces().iter().copied().chain(above.faces().iter().map(|face| face.map(|v| v + count)));
+    let both = Triangles::new(vertices, faces.collect()).expect("triangles");
+    let tree = Tree::of(&both);
+    let ray = CastRay::new(DVec3::new(0.3, 0.7, 3.0), DVec3::new(0.01, 0.01, -1.0));
+    let in_frame = tree.quads.ray(&ray).expect("a ray that is near");
+    let seen = |next: fn() -> Next| {
+        let mut seen = Vec::new();
+        tree.quads.walk(&in_frame, |place| {
+            seen.push(tree.bvh.face(place).id.0);
+            next()
+        });
+        seen
+    };
+    // The upper one first, at t = 2; the lower one at t = 3.
+    let all = seen(|| Next::On);
+    assert!(all.iter().any(|&id| id < 512) && all[0] >= 512, "{all:?}");
+    assert!(seen(|| Next::UpTo(2.0)).iter().all(|&id| id >= 512));
+    assert_eq!(seen(|| Next::UpTo(3.0)), all);
+    assert_eq!(seen(|| Next::Stop).len(), 1);
+}
+
+#[test]
+fn rays_from_far_away_have_the_same_answers() {
+    let mut random = SplitMix64(8);
+    let (mesh, faces) = moved_and_scaled(&lattice(), DVec3::ZERO, 1.0);
+    let cast = ExactCast::new(&mesh);
+    let (mut near, mut distant, mut hits) = (0, 0, 0);
+    for k in 0..400 {
+        let far = [1e2, 1e4, 1e6, 1e12][k % 4];
+        let face = faces[random.below(512) as usize];
+        let ray = aimed(&mut random, face, far);
+        match cast.tree.quads.ray(&ray) {
+            Some(_) => near += 1,
+            None => distant += 1,
+        }
+        let query = QueryRay::new(&ray);
+        let met: Vec<&Triangle> = cast
+            .tree
+            .bvh
+            .faces_below(0)
+            .iter()
+            .filter(|face| face.met_side(&query, Sides::Both).is_some())
+            .collect();
+        let first = met.iter().min_by(|a, b| a.compare(b, &query));
+        let mut ties: Vec<_> = met
+            .iter()
+            .filter(|face| first.is_some_and(|first| face.compare(first, &query).is_eq()))
+            .collect();
+        ties.sort_by_key(|face| face.id);
+        let ties: Vec<_> = ties.iter().map(|face| face.id).collect();
+        hits += usize::from(!ties.is_empty());
+        assert_eq!(cast.first(&ray, Sides::Both), ties, "{ray:?}");
+        assert_eq!(cast.any(&ray, Sides::Both), !ties.is_empty(), "{ray:?}");
+        assert_eq!(
+            cast.all(&ray, Sides::Both).iter().map(|group| group.faces.len()).sum::<usize>(),
+            met.len()
+        );
+    }
+    assert!(near > 100 && distant > 100 && hits > 100, "{near} near, {distant} far away, {hits} hits");
+}
