@@ -8,7 +8,11 @@
 //! A product below 1e-250 is bounded by its size alone. Above 1e250, and for quotients below 1e-250, nothing is
 //! claimed: the error is infinite, and exact arithmetic takes over.
 
+mod plane_crossing;
+
 use std::cmp::Ordering;
+
+pub(crate) use plane_crossing::PlaneCrossing;
 
 use crate::number::Number;
 use crate::rounding::Rounded;

@@ -18,7 +18,7 @@ use raypencil_scene::{CastRay, FaceId, Side, Sides};
 use super::ExactCast;
 use super::query_ray::{QueryRay, RayNumbers};
 use super::triangle::Triangle;
-use crate::double_double::DoubleDouble;
+use crate::double_double::{DoubleDouble, PlaneCrossing};
 use crate::intersection::{minus, sign_of};
 use crate::number::{Dyadic, Number};
 use crate::rounding::{Rounded, quotient, root};
@@ -72,8 +72,7 @@ impl ExactCast<'_> {
 /// The polynomials of a ray and a face from which all values follow. Each is formed when it is first asked for.
 struct Meeting<T> {
     ray: RayNumbers<T>,
-    /// a' = a - o.
-    offset: Vector<T>,
+    face: Triangle,
     normal: Vector<T>,
     height: OnceCell<T>,
     approach: OnceCell<T>,
@@ -84,7 +83,7 @@ struct Meeting<T> {
 impl<T: Number> Meeting<T> {
     fn new(ray: RayNumbers<T>, face: &Triangle) -> Self {
         Self {
-            offset: face.corner(0).sub(&ray.origin),
+            face: *face,
             normal: face.normal::<T>(),
             height: OnceCell::new(),
             approach: OnceCell::new(),
@@ -96,7 +95,10 @@ impl<T: Number> Meeting<T> {
 
     /// h.
     fn height(&self) -> &T {
-        self.height.get_or_init(|| self.normal.dot(&self.offset))
+        self.height.get_or_init(|| {
+            // a' = a - o.
+            self.normal.dot(&self.face.corner(0).sub(&self.ray.origin))
+        })
     }
 
     /// g.
@@ -118,6 +120,25 @@ impl<T: Number> Meeting<T> {
     }
 }
 
+impl Meeting<DoubleDouble> {
+    /// The same with [`PlaneCrossing`], which is quick, where that knows the crossing.
+    fn quickly(ray: &CastRay, face: &Triangle) -> Self {
+        let numbers = RayNumbers::of(ray);
+        let Some(crossing) = PlaneCrossing::of(ray.origin, ray.direction, face.corners) else {
+            return Self::new(numbers, face);
+        };
+        Self {
+            ray: numbers,
+            face: *face,
+            normal: Vector(crossing.normal),
+            height: OnceCell::from(crossing.height),
+            approach: OnceCell::from(crossing.approach),
+            direction_squared: OnceCell::new(),
+            normal_squared: OnceCell::new(),
+        }
+    }
+}
+
 /// Where a ray meets a face. Each value is formed when it is asked for, correctly rounded: first in pairs of f64 with a proven
 /// error, and exactly where these do not decide the rounding.
 pub struct CastMeeting<'r> {
@@ -125,7 +146,8 @@ pub struct CastMeeting<'r> {
     face: Triangle,
     side: Side,
     fast: OnceCell<Meeting<DoubleDouble>>,
-    exact: OnceCell<Meeting<Dyadic>>,
+    /// Apart, for it is large and rare.
+    exact: OnceCell<Box<Meeting<Dyadic>>>,
     ray: &'r CastRay,
     /// |d| and |n|.
     length: OnceCell<DoubleDouble>,
@@ -158,11 +180,11 @@ impl<'r> CastMeeting<'r> {
     }
 
     fn fast(&self) -> &Meeting<DoubleDouble> {
-        self.fast.get_or_init(|| Meeting::new(RayNumbers::of(self.ray), &self.face))
+        self.fast.get_or_init(|| Meeting::quickly(self.ray, &self.face))
     }
 
     fn exact(&self) -> &Meeting<Dyadic> {
-        self.exact.get_or_init(|| Meeting::new(self.query.exact().clone(), &self.face))
+        self.exact.get_or_init(|| Box::new(Meeting::new(self.query.exact().clone(), &self.face)))
     }
 
     fn length(&self) -> &DoubleDouble {

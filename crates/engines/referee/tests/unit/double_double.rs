@@ -16,7 +16,7 @@ fn some_number() -> impl Strategy<Value = f64> {
 }
 
 /// Whether the exact number lies within the claimed error.
-fn holds(claimed: &DoubleDouble, exact: &Dyadic) -> bool {
+pub(super) fn holds(claimed: &DoubleDouble, exact: &Dyadic) -> bool {
     if claimed.error.is_infinite() {
         return true;
     }
