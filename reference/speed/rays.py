@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import argparse
 import os
-import platform
 import sys
 import time
 from collections.abc import Callable
@@ -21,6 +20,7 @@ from typing import Any
 import numpy as np
 
 import raypencil
+from tables import number, processor, table
 
 HERE = Path(__file__).resolve().parent
 VALUES = ("range", "point", "normal", "barycentric", "cos_incidence")
@@ -273,23 +273,6 @@ def measure(name: str, mesh: raypencil.Mesh, count: int, rounds: int, times: Tim
             costs.add(what, name, 1e6 * seconds(calls) / ONE_BY_ONE)
 
 
-def number(value: float | None) -> str:
-    return "-" if value is None else f"{value:,.0f}" if value >= 99.5 else f"{value:.3g}"
-
-
-def table(head: list[str], rows: list[list[str]]) -> str:
-    lines = ["| " + " | ".join(head) + " |", "| --- |" + " ---: |" * (len(head) - 1)]
-    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
-
-
-def machine() -> str:
-    try:
-        names = [line.split(":", 1)[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")]
-        return names[0]
-    except (OSError, IndexError):
-        return platform.processor() or platform.machine()
-
-
 def page(given: argparse.Namespace, grounds: dict[str, int], times: Times, costs: Times) -> str:
     columns = [f"{name}, {kind}" for name in grounds for kind in ("camera", "random")]
     titles = [title for title in ("exact", "`tracer`", "Embree, robust", "Open3D", "Warp, processor")]
@@ -310,7 +293,7 @@ def page(given: argparse.Namespace, grounds: dict[str, int], times: Times, costs
     parts = [
         "# The speed of any rays",
         "<!-- stands on\nmade_by = \"just speed-rays\"\nmeasured = \"times of one machine, of raypencil and of other people's programs\"\n-->",
-        f"`just speed-rays` measures this page from Python ([rays.py](../../reference/speed/rays.py)): {machine()}, one thread, medians of "
+        f"`just speed-rays` measures this page from Python ([rays.py](../../reference/speed/rays.py)): {processor()}, one thread, medians of "
         f"{given.rounds} rounds of {given.rays:,} rays, in which the programs take turns. Times are those of the processor, not of a clock. "
         + ("Other work ran beside, which makes all of them longer. " if os.getloadavg()[0] > 1.5 * (os.cpu_count() or 1) else "")
         + "The others compute in single precision, and get vertices and rays that are numbers of it. The trees are there already. "

@@ -11,12 +11,13 @@ import argparse
 import importlib.util
 import json
 import os
-import platform
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 from statistics import median
+
+from tables import number, processor, table
 
 HERE = Path(__file__).resolve().parent
 SIZES = ["2000", "200000", "2000000"]
@@ -70,25 +71,6 @@ def run(command: list[str], threads: int) -> dict:
     if done.returncode != 0:
         sys.exit(f"{' '.join(command)}: exit code {done.returncode}\n{done.stderr}")
     return json.loads(done.stdout.splitlines()[-1])
-
-
-def number(value: float | None) -> str:
-    if value is None:
-        return "-"
-    return f"{value:.0f}" if value >= 99.5 else f"{value:.3g}"
-
-
-def table(head: list[str], rows: list[list[str]]) -> str:
-    lines = ["| " + " | ".join(head) + " |", "| --- |" + " ---: |" * (len(head) - 1)]
-    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
-
-
-def processor() -> str:
-    try:
-        names = [line.split(":", 1)[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")]
-        return f"{names[0]}, {len(names)} threads of it"
-    except (OSError, IndexError):
-        return f"{platform.processor() or platform.machine()}, {os.cpu_count()} threads of it"
 
 
 def main():
@@ -225,7 +207,8 @@ def page(given, grounds, ours, theirs, two, theirs_two, has_embree: bool, scalin
     command = "just speed" + (" MESH" if given.mesh else "")
     parts = [
         "# How fast\n",
-        f"Made by `{command}` (`reference/speed/speed.py`) on one {processor()}. Medians of {given.rounds} rounds of "
+        f"Made by `{command}` (`reference/speed/speed.py`) on one {processor()}, {os.cpu_count()} threads of it. "
+        f"Medians of {given.rounds} rounds of "
         f"{RUNS_A_ROUND} runs; in each round the programs take turns. One thread, unless a row says otherwise.\n",
         "The grounds are generated plains of 50 m x 50 m"
         + (", and a mesh of the user's own (the last column). " if given.mesh else ". ")
