@@ -193,17 +193,6 @@ impl<F> Bvh<F> {
         }
     }
 
-    /// Some face, by its place in the hierarchy.
-    #[inline]
-    pub(crate) fn face(&self, place: u32) -> &F {
-        &self.faces[place as usize]
-    }
-
-    /// The place of the first face of a node without children.
-    pub(crate) fn first_face(&self, node: u32) -> u32 {
-        self.nodes[node as usize].first
-    }
-
     /// All faces in a node and the nodes below it.
     pub(crate) fn faces_below(&self, node: u32) -> &[F] {
         let end = |last: bool| {

@@ -165,7 +165,7 @@ pub fn cast_beside_first(
     questions: Questions,
     progress: &dyn Progress,
 ) -> Answers {
-    let any = questions.any.then(|| each(rays, |ray| exact.any(ray, sides)));
+    let any = questions.any.then(|| any_exactly(exact, rays, sides));
     let all = questions.all.then(|| {
         progress.stage(&format!("all hits of {} rays", rays.len()));
         each(rays, |ray| all(exact, ray, sides))
@@ -188,7 +188,7 @@ pub fn traced_beside_first(
     questions: Questions,
 ) -> Answers {
     assert!(!questions.margins, "the tracer has no margins");
-    let any = questions.any.then(|| each(rays, |ray| tracer.traverser().any(ray, sides)));
+    let any = questions.any.then(|| any_traced(tracer, rays, sides));
     let groups = |ray: &CastRay| {
         let hits = tracer.traverser().all(ray, sides);
         let group = |hits: &[TracedHit]| GroupAtT {
@@ -209,6 +209,28 @@ fn each<T: Send>(rays: &[CastRay], answer: impl Fn(&CastRay) -> T + Sync + Send)
     match rays.len() {
         0..=FEW_RAYS => rays.iter().map(answer).collect(),
         _ => rays.par_iter().map(answer).collect(),
+    }
+}
+
+/// Rays that one thread asks about by itself.
+const RAYS_A_PART: usize = 256;
+
+fn any_exactly(exact: &ExactCast<'_>, rays: &[CastRay], sides: Sides) -> Vec<bool> {
+    match rays.len() {
+        0..=FEW_RAYS => exact.any_of(rays, sides),
+        _ => rays.par_chunks(RAYS_A_PART).flat_map_iter(|part| exact.any_of(part, sides)).collect(),
+    }
+}
+
+fn any_traced(tracer: &TracerCast, rays: &[CastRay], sides: Sides) -> Vec<bool> {
+    let of_part = |part: &[CastRay]| {
+        // One stack for all of them.
+        let mut traverser = tracer.traverser();
+        part.iter().map(|ray| traverser.any(ray, sides)).collect::<Vec<_>>()
+    };
+    match rays.len() {
+        0..=FEW_RAYS => of_part(rays),
+        _ => rays.par_chunks(RAYS_A_PART).flat_map_iter(of_part).collect(),
     }
 }
 

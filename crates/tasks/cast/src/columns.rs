@@ -256,7 +256,7 @@ impl ColumnsPart<'_> {
     /// assert!(columns.point.is_none() && counts.hits == 1);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn ask(self, caster: Caster<'_>, rays: &[CastRay], sides: Sides) -> ReadingCounts {
+    pub fn ask(mut self, caster: Caster<'_>, rays: &[CastRay], sides: Sides) -> ReadingCounts {
         assert_eq!(self.rays, rays.len(), "rays of a part of columns");
         if rays.len() > RAYS_A_PART {
             let middle = rays.len() / 2;
@@ -267,33 +267,32 @@ impl ColumnsPart<'_> {
             );
             return a.and(b);
         }
+        let mut counts = ReadingCounts::default();
         match caster {
-            Caster::Referee(exact) => self.fill(rays, |ray| exact.first_meeting(ray, sides)),
+            Caster::Referee(exact) => {
+                exact.first_meetings(rays, sides, |index, read| self.put(index, &read, &mut counts));
+            }
             Caster::Tracer(tracer) => {
                 let mut traverser = tracer.traverser();
-                self.fill(rays, |ray| Reading::of(traverser.first(ray, sides), |hit| ray.is_too_near(hit.t)))
-            }
-        }
-    }
-
-    fn fill<'r, H: Hit>(
-        mut self,
-        rays: &'r [CastRay],
-        mut first: impl FnMut(&'r CastRay) -> Reading<H>,
-    ) -> ReadingCounts {
-        let mut counts = ReadingCounts::default();
-        for (index, ray) in rays.iter().enumerate() {
-            let read = first(ray);
-            match &read {
-                Reading::Hit(hit) => {
-                    counts.hits += 1;
-                    counts.backs += u64::from(hit.met_side() == Side::Back);
+                for (index, ray) in rays.iter().enumerate() {
+                    let read = Reading::of(traverser.first(ray, sides), |hit| ray.is_too_near(hit.t));
+                    self.put(index, &read, &mut counts);
                 }
-                Reading::TooNear => counts.too_near += 1,
-                Reading::Miss => {}
             }
-            self.set(index, &read);
         }
         counts
+    }
+
+    /// Puts down what the ray of this index reads.
+    fn put(&mut self, index: usize, read: &Reading<impl Hit>, counts: &mut ReadingCounts) {
+        match read {
+            Reading::Hit(hit) => {
+                counts.hits += 1;
+                counts.backs += u64::from(hit.met_side() == Side::Back);
+            }
+            Reading::TooNear => counts.too_near += 1,
+            Reading::Miss => {}
+        }
+        self.set(index, read);
     }
 }

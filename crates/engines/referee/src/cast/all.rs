@@ -53,16 +53,15 @@ impl ExactCast<'_> {
     /// [`Sides::Fronts`], only groups with a front are listed, and only fronts in them.
     pub fn all(&self, ray: &CastRay, sides: Sides) -> Vec<HitGroup> {
         let query = QueryRay::new(ray);
-        let mut met: Vec<(&Triangle, Side, [f64; 2])> = Vec::new();
+        let mut met: Vec<(Triangle, Side, [f64; 2])> = Vec::new();
         self.walk(ray, |face| {
             if let Some(Met { side, t }) = face.met(&query, Sides::Both) {
-                met.push((face, side, [t.low, t.high]));
+                met.push((*face, side, [t.low, t.high]));
             }
             Next::On
         });
         // By the intervals of t where these are apart, else exactly.
-        let order = |(a, _, of_a): &(&Triangle, Side, [f64; 2]),
-                     (b, _, of_b): &(&Triangle, Side, [f64; 2])| {
+        let order = |(a, _, of_a): &(Triangle, Side, [f64; 2]), (b, _, of_b): &(Triangle, Side, [f64; 2])| {
             if of_a[1] < of_b[0] {
                 Ordering::Less
             } else if of_a[0] > of_b[1] {
@@ -77,9 +76,9 @@ impl ExactCast<'_> {
                 let faces: Vec<SidedFace> = group
                     .iter()
                     .filter(|(_, side, _)| sides.include(*side))
-                    .map(|&(face, side, _)| SidedFace { face: face.id, side })
+                    .map(|(face, side, _)| SidedFace { face: face.id, side: *side })
                     .collect();
-                let crossing = group.iter().map(|&(face, side, _)| crossing(face, side, &query)).sum();
+                let crossing = group.iter().map(|(face, side, _)| crossing(face, *side, &query)).sum();
                 (!faces.is_empty()).then_some(HitGroup { faces, crossing })
             })
             .collect()

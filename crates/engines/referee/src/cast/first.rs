@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use raypencil_scene::{CastRay, FaceId, Reading, Side, Sides};
 
-use super::quads::Next;
+use super::quads::{Next, TOGETHER};
 use super::query_ray::QueryRay;
 use super::triangle::{Met, Triangle};
 use super::values::CastMeeting;
@@ -60,22 +60,56 @@ impl ExactCast<'_> {
     /// ```
     pub fn first_meeting<'r>(&self, ray: &'r CastRay, sides: Sides) -> Reading<(CastMeeting<'r>, u32)> {
         let query = QueryRay::new(ray);
-        let mut nearest = Nearest::new(&query, sides);
-        self.walk(ray, |face| nearest.see(face));
-        let Some((face, side)) = nearest.lowest() else { return Reading::Miss };
-        if ray.t_blind > 0.0 && face.is_before(ray.t_blind, &query) {
-            return Reading::TooNear;
+        let mut nearest = Nearest::new(sides);
+        self.walk(ray, |face| nearest.see(face, &query));
+        nearest.meeting(ray, query)
+    }
+
+    /// [`first_meeting`](Self::first_meeting) of many rays, which is quicker than one after the other: `each` gets the index of every
+    /// ray, in their order, and what it reads.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use raypencil_referee::ExactCast;
+    /// use raypencil_scene::{CastRay, Sides, Triangles};
+    ///
+    /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let triangle = Triangles::new(corners, vec![[0, 1, 2]])?;
+    /// let ray = |x: f64| CastRay::new(DVec3::new(x, 0.25, 1.0), DVec3::NEG_Z);
+    /// let mut hits = Vec::new();
+    /// let rays = [ray(0.25), ray(2.0), ray(0.75)];
+    /// ExactCast::new(&triangle).first_meetings(&rays, Sides::Both, |k, read| {
+    ///     hits.extend(read.hit().map(|(meeting, ties)| (k, meeting.t().double, *ties)));
+    /// });
+    /// // The last one passes the edge itself.
+    /// assert_eq!(hits, [(0, 1.0, 1), (2, 1.0, 1)]);
+    /// # Ok::<(), raypencil_scene::SceneError>(())
+    /// ```
+    pub fn first_meetings<'r>(
+        &self,
+        rays: &'r [CastRay],
+        sides: Sides,
+        mut each: impl FnMut(usize, Reading<(CastMeeting<'r>, u32)>),
+    ) {
+        let mut queries = Vec::with_capacity(TOGETHER);
+        for (part, rays) in rays.chunks(TOGETHER).enumerate() {
+            queries.extend(rays.iter().map(|ray| (QueryRay::new(ray), Nearest::new(sides))));
+            self.walk_together(rays, |index, face| {
+                let (query, nearest) = &mut queries[index];
+                nearest.see(face, query)
+            });
+            for (index, (query, nearest)) in queries.drain(..).enumerate() {
+                each(part * TOGETHER + index, nearest.meeting(&rays[index], query));
+            }
         }
-        let ties = nearest.count() as u32;
-        Reading::Hit((CastMeeting::new(ray, query, *face, side), ties))
     }
 
     /// What the ray's sensor reads of the nearest faces.
-    pub(super) fn read<'f>(&self, ray: &CastRay, nearest: &'f [&'f Triangle]) -> Reading<&'f [&'f Triangle]> {
+    pub(super) fn read<'f>(&self, ray: &CastRay, nearest: &'f [Triangle]) -> Reading<&'f [Triangle]> {
         let met = (!nearest.is_empty()).then_some(nearest);
         // Most rays have no shortest range; the faces of a tie are all at one t.
         let is_too_near =
-            |met: &&[&Triangle]| ray.t_blind > 0.0 && met[0].is_before(ray.t_blind, &QueryRay::new(ray));
+            |met: &&[Triangle]| ray.t_blind > 0.0 && met[0].is_before(ray.t_blind, &QueryRay::new(ray));
         Reading::of(met, is_too_near)
     }
 
@@ -98,8 +132,8 @@ impl ExactCast<'_> {
     /// ```
     pub fn first_moved(&self, ray: &CastRay, sides: Sides, by: [f64; 2]) -> Vec<FaceId> {
         let query = QueryRay::moved(ray, by);
-        let mut nearest = Nearest::new(&query, sides);
-        walk_bundle(&self.tree.bvh, &moved_bundle(ray, by), ray, |face| nearest.see(face));
+        let mut nearest = Nearest::new(sides);
+        walk_bundle(&self.tree.bvh, &moved_bundle(ray, by), ray, |face| nearest.see(face, &query));
         nearest.sorted().iter().map(|face| face.id).collect()
     }
 
@@ -114,52 +148,73 @@ impl ExactCast<'_> {
         is_met
     }
 
+    /// [`any`](Self::any) of many rays, in their order, which is quicker than one after the other.
+    pub fn any_of(&self, rays: &[CastRay], sides: Sides) -> Vec<bool> {
+        let mut all_met = vec![false; rays.len()];
+        for (rays, is_met) in rays.chunks(TOGETHER).zip(all_met.chunks_mut(TOGETHER)) {
+            let queries: Vec<QueryRay<'_>> = rays.iter().map(QueryRay::new).collect();
+            self.walk_together(rays, |index, face| {
+                is_met[index] = is_met[index] || face.met_side(&queries[index], sides).is_some();
+                if is_met[index] { Next::Stop } else { Next::On }
+            });
+        }
+        all_met
+    }
+
     /// The nearest faces, in ascending order.
-    pub(super) fn nearest(&self, ray: &CastRay, sides: Sides) -> Vec<&Triangle> {
+    pub(super) fn nearest(&self, ray: &CastRay, sides: Sides) -> Vec<Triangle> {
         let query = QueryRay::new(ray);
-        let mut nearest = Nearest::new(&query, sides);
-        self.walk(ray, |face| nearest.see(face));
+        let mut nearest = Nearest::new(sides);
+        self.walk(ray, |face| nearest.see(face, &query));
         nearest.sorted()
     }
 }
 
 /// The nearest of the faces that a ray meets.
-struct Nearest<'q, 's> {
-    query: &'q QueryRay<'q>,
+struct Nearest {
     sides: Sides,
     /// One of them, and how it is met.
-    first: Option<(&'s Triangle, Met)>,
+    first: Option<(Triangle, Met)>,
     /// The others at exactly its t.
-    others: Vec<(&'s Triangle, Side)>,
+    others: Vec<(Triangle, Side)>,
 }
 
-impl<'q, 's> Nearest<'q, 's> {
-    fn new(query: &'q QueryRay<'q>, sides: Sides) -> Self {
-        Self { query, sides, first: None, others: Vec::new() }
+impl Nearest {
+    fn new(sides: Sides) -> Self {
+        Self { sides, first: None, others: Vec::new() }
     }
 
     /// Looks at a face, in any order.
     #[inline]
-    fn see(&mut self, face: &'s Triangle) -> Next {
-        let Some(met) = face.met(self.query, self.sides) else { return Next::On };
+    fn see(&mut self, face: &Triangle, query: &QueryRay<'_>) -> Next {
+        let Some(met) = face.met(query, self.sides) else { return Next::On };
         // By the intervals of t where these are apart, else exactly.
         let order = match &self.first {
             None => Ordering::Less,
             Some((_, kept)) if met.t.low > kept.t.high => Ordering::Greater,
             Some((_, kept)) if met.t.high < kept.t.low => Ordering::Less,
-            Some((kept, _)) => face.compare(kept, self.query),
+            Some((kept, _)) => face.compare(kept, query),
         };
         match order {
             Ordering::Less => {
                 self.others.clear();
-                self.first = Some((face, met));
+                self.first = Some((*face, met));
                 // From here on only faces up to the nearest matter.
                 return Next::UpTo(met.t.high);
             }
-            Ordering::Equal => self.others.push((face, met.side)),
+            Ordering::Equal => self.others.push((*face, met.side)),
             Ordering::Greater => {}
         }
         Next::On
+    }
+
+    /// What the ray's sensor reads of them.
+    fn meeting<'r>(&self, ray: &'r CastRay, query: QueryRay<'r>) -> Reading<(CastMeeting<'r>, u32)> {
+        let Some((face, side)) = self.lowest() else { return Reading::Miss };
+        if ray.t_blind > 0.0 && face.is_before(ray.t_blind, &query) {
+            return Reading::TooNear;
+        }
+        Reading::Hit((CastMeeting::new(ray, query, face, side), self.count() as u32))
     }
 
     fn count(&self) -> usize {
@@ -167,16 +222,16 @@ impl<'q, 's> Nearest<'q, 's> {
     }
 
     /// The face of the lowest index, and the side of it that is met.
-    fn lowest(&self) -> Option<(&'s Triangle, Side)> {
+    fn lowest(&self) -> Option<(Triangle, Side)> {
         let (face, met) = self.first?;
-        let lower = |a: (&'s Triangle, Side), b: (&'s Triangle, Side)| if b.0.id < a.0.id { b } else { a };
+        let lower = |a: (Triangle, Side), b: (Triangle, Side)| if b.0.id < a.0.id { b } else { a };
         Some(self.others.iter().copied().fold((face, met.side), lower))
     }
 
     /// All of them, in ascending order.
-    fn sorted(&self) -> Vec<&'s Triangle> {
+    fn sorted(&self) -> Vec<Triangle> {
         let others = self.others.iter().map(|(face, _)| *face);
-        let mut faces: Vec<&Triangle> = self.first.iter().map(|(face, _)| *face).chain(others).collect();
+        let mut faces: Vec<Triangle> = self.first.iter().map(|(face, _)| *face).chain(others).collect();
         faces.sort_by_key(|face| face.id);
         faces
     }

@@ -47,7 +47,7 @@ use raypencil_scene::{CastRay, FaceId, Triangles};
 
 use crate::bvh::{Bvh, RayBundle};
 use margin::Seams;
-use quads::{Next, Quads};
+use quads::{Next, Quads, TOGETHER};
 use query_ray::QueryRay;
 use triangle::Triangle;
 
@@ -137,10 +137,10 @@ impl Tree {
             faces.retain(Triangle::has_area);
         }
         let [low, high] = mesh.bounds().unwrap_or_default();
-        let bvh = Bvh::build(faces);
+        let quads = Quads::of(&faces);
         Self {
-            quads: Quads::of(&bvh),
-            bvh,
+            quads,
+            bvh: Bvh::build(faces),
             diagonal: length(high - low),
             largest_coordinate: low.abs().max(high.abs()).max_element(),
             seams: OnceLock::new(),
@@ -160,11 +160,27 @@ impl<'t> ExactCast<'t> {
 
     /// Shows the faces that the ray may meet, and others, nearer ones first, until it is enough.
     #[inline]
-    fn walk<'s>(&'s self, ray: &CastRay, mut visit: impl FnMut(&'s Triangle) -> Next) {
+    fn walk(&self, ray: &CastRay, visit: impl FnMut(&Triangle) -> Next) {
         let Tree { bvh, quads, .. } = &*self.tree;
         match quads.ray(ray) {
-            Some(in_frame) => quads.walk(&in_frame, |place| visit(bvh.face(place))),
+            Some(in_frame) => quads.walk(&in_frame, visit),
             None => walk_bundle(bvh, &bundle(ray), ray, visit),
+        }
+    }
+
+    /// [`walk`](Self::walk) for at most [`TOGETHER`] rays; `visit` gets the index of the ray, too.
+    #[inline]
+    fn walk_together(&self, rays: &[CastRay], mut visit: impl FnMut(usize, &Triangle) -> Next) {
+        let Tree { bvh, quads, .. } = &*self.tree;
+        let mut in_frame = [const { None }; TOGETHER];
+        for (in_frame, ray) in in_frame.iter_mut().zip(rays) {
+            *in_frame = quads.ray(ray);
+        }
+        quads.walk_together(&in_frame[..rays.len()], &mut visit);
+        for (index, ray) in rays.iter().enumerate() {
+            if in_frame[index].is_none() {
+                walk_bundle(bvh, &bundle(ray), ray, |face| visit(index, face));
+            }
         }
     }
 
@@ -176,11 +192,11 @@ impl<'t> ExactCast<'t> {
 
 /// [`ExactCast::walk`] for rays of any size, and moved ones.
 #[inline(never)]
-fn walk_bundle<'s>(
-    bvh: &'s Bvh<Triangle>,
+fn walk_bundle(
+    bvh: &Bvh<Triangle>,
     bundle: &RayBundle,
     ray: &CastRay,
-    mut visit: impl FnMut(&'s Triangle) -> Next,
+    mut visit: impl FnMut(&Triangle) -> Next,
 ) {
     let length = QueryRay::length(ray);
     let mut farthest = bundle.max_range;

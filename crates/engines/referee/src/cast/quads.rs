@@ -31,11 +31,11 @@
 //! edge b c is asked with b'; its C is at most |d x a'| + 2 E + 32 u A, which stands for both. Products that underflow lose less than
 //! [`UNDERFLOW`].
 
-use glam::{BVec4A, DVec3, Vec4};
-use raypencil_scene::CastRay;
+use glam::{BVec4A, DVec3, Vec3, Vec4};
+use rayon::prelude::*;
+use raypencil_scene::{CastRay, FaceId};
 
 use super::triangle::Triangle;
-use crate::bvh::{Bvh, NodeContent};
 
 /// Boxes of a node, and faces of a leaf.
 const WIDTH: usize = 4;
@@ -94,17 +94,31 @@ struct Leaf {
     corners: [[Vec4; 3]; 3],
     /// At least the largest part of an edge.
     longest: f32,
-    /// The first face of the hierarchy.
-    first: u32,
     /// A bit for each face that there is.
     present: u32,
+    /// The faces as they are. They lie beside what is asked before, for a ray comes here from far away in memory.
+    faces: [Triangle; WIDTH],
 }
+
+const NO_FACES: Leaf = Leaf {
+    corners: [[Vec4::ZERO; 3]; 3],
+    longest: 0.0,
+    present: 0,
+    faces: [Triangle { id: FaceId(u32::MAX), corners: [DVec3::ZERO; 3] }; WIDTH],
+};
 
 /// A hierarchy of faces for rays.
 #[derive(Debug)]
 pub(super) struct Quads {
     nodes: Vec<Node>,
+    /// All are full but the last.
     leaves: Vec<Leaf>,
+    frame: Frame,
+}
+
+/// How coordinates become those of the frame.
+#[derive(Debug, Clone, Copy)]
+struct Frame {
     middle: DVec3,
     /// A power of two.
     scale: f64,
@@ -136,78 +150,53 @@ pub(super) enum Next {
     Stop,
 }
 
-impl Quads {
-    /// The same hierarchy as `bvh`, with every second floor.
-    pub(super) fn of(bvh: &Bvh<Triangle>) -> Self {
-        let mut quads = Self { nodes: Vec::new(), leaves: Vec::new(), middle: DVec3::ZERO, scale: 1.0 };
-        if bvh.is_empty() {
-            return quads;
-        }
-        let [low, high] = bvh.bounds(0);
-        quads.middle = 0.5 * low + 0.5 * high;
-        let half = (high - quads.middle).max(quads.middle - low).max_element();
+impl Frame {
+    fn of(faces: &[Triangle]) -> Self {
+        let none = || (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let with = |(low, high): (DVec3, DVec3), face: &Triangle| {
+            face.corners.iter().fold((low, high), |(low, high), corner| (low.min(*corner), high.max(*corner)))
+        };
+        let both = |a: (DVec3, DVec3), b: (DVec3, DVec3)| (a.0.min(b.0), a.1.max(b.1));
+        let (low, high) = faces.par_iter().fold(none, with).reduce(none, both);
+        let middle = 0.5 * low + 0.5 * high;
+        let half = (high - middle).max(middle - low).max_element();
         // Below 2^1000, so that it is finite; a smaller mesh is smaller in the frame, too.
-        quads.scale = libm::scalbn(1.0, (-libm::frexp(half).1).min(1000));
-        quads.nodes.push(EMPTY);
-        let mut to_fill = vec![(0, 0)];
-        while let Some((at, node)) = to_fill.pop() {
-            for (lane, child) in inside(bvh, node).enumerate() {
-                let what = match bvh.content(child) {
-                    NodeContent::Faces(_) => quads.add_leaf(bvh, child),
-                    NodeContent::Children(_) => {
-                        let index = quads.nodes.len() as u32;
-                        quads.nodes.push(EMPTY);
-                        to_fill.push((index as usize, child));
-                        index
-                    }
-                };
-                let [low, high] = bvh.bounds(child).map(|corner| quads.framed(corner));
-                let into = &mut quads.nodes[at];
-                for axis in 0..3 {
-                    into.planes[axis][lane] = down(low[axis]);
-                    into.planes[axis + 3][lane] = up(high[axis]);
-                }
-                into.children[lane] = what;
-            }
-        }
-        quads.nodes.shrink_to_fit();
-        quads.leaves.shrink_to_fit();
-        quads
+        Self { middle, scale: libm::scalbn(1.0, (-libm::frexp(half).1).min(1000)) }
     }
 
     /// A point in the frame.
-    fn framed(&self, point: DVec3) -> DVec3 {
+    #[inline]
+    fn of_point(&self, point: DVec3) -> DVec3 {
         (point - self.middle) * self.scale
     }
+}
 
-    /// Adds the faces of a node; gives it as a child.
-    fn add_leaf(&mut self, bvh: &Bvh<Triangle>, node: u32) -> u32 {
-        let faces = bvh.faces_below(node);
-        let mut leaf =
-            Leaf { corners: Default::default(), longest: 0.0, first: bvh.first_face(node), present: 0 };
-        for (lane, face) in faces.iter().enumerate() {
-            let corners = face.corners.map(|corner| self.framed(corner).as_vec3());
-            for k in 0..3 {
-                for axis in 0..3 {
-                    leaf.corners[k][axis][lane] = corners[k][axis];
-                }
-                // The very difference that walks form.
-                let edge = corners[(k + 1) % 3] - corners[k];
-                leaf.longest = leaf.longest.max(edge.abs().max_element());
-            }
-            leaf.present |= 1 << lane;
+impl Quads {
+    /// The hierarchy of faces, built on all threads. It does not depend on their number, nor on the order of the faces.
+    pub(super) fn of(faces: &[Triangle]) -> Self {
+        if faces.is_empty() {
+            let frame = Frame { middle: DVec3::ZERO, scale: 1.0 };
+            return Self { nodes: Vec::new(), leaves: Vec::new(), frame };
         }
-        self.leaves.push(leaf);
-        LEAF | (self.leaves.len() as u32 - 1)
+        let frame = Frame::of(faces);
+        let item = |(place, face): (usize, &Triangle)| Item::of(&frame, place as u32, face);
+        let mut items: Vec<Item> = faces.par_iter().enumerate().map(item).collect();
+        let quads = items.len().div_ceil(WIDTH);
+        // A root has a node in any case.
+        let mut nodes = vec![EMPTY; nodes_of(quads)[0].max(1)];
+        let mut leaves = vec![NO_FACES; quads];
+        let whole = Part { items: &mut items, nodes: &mut nodes, leaves: &mut leaves, node: 0, leaf: 0 };
+        whole.fill(&frame, faces);
+        Self { nodes, leaves, frame }
     }
 
     /// A ray in the frame; `None` if it is too far away for it.
     #[inline]
     pub(super) fn ray(&self, ray: &CastRay) -> Option<FrameRay> {
-        let origin = self.framed(ray.origin);
+        let origin = self.frame.of_point(ray.origin);
         let size = origin.abs().max_element();
         let longest = ray.direction.abs().max_element();
-        let per_t = longest * self.scale;
+        let per_t = longest * self.frame.scale;
         // !(a <= b) also holds for NaN.
         if !(size <= MAX_ORIGIN) || !(1e-250..1e250).contains(&per_t) || longest < 1e-250 {
             return None;
@@ -242,67 +231,145 @@ impl Quads {
         (t * per_t) as f32 * GROWN + WIDENED
     }
 
-    /// Shows the index of each face that the ray may meet, nearer leaves first, until it is enough.
+    /// Shows each face that the ray may meet, nearer leaves first, until it is enough.
     #[inline]
-    pub(super) fn walk(&self, ray: &FrameRay, mut visit: impl FnMut(u32) -> Next) {
+    pub(super) fn walk(&self, ray: &FrameRay, mut visit: impl FnMut(&Triangle) -> Next) {
         if self.nodes.is_empty() {
             return;
         }
-        let mut far = ray.far;
-        let entered = [0, 1, 2].map(|axis: usize| if ray.is_down[axis] { axis + 3 } else { axis });
-        let mut stack = [(0.0_f32, 0_u32); STACK];
-        let mut waiting = 0;
-        let mut next = 0;
-        loop {
-            if next & LEAF == 0 {
-                let node = &self.nodes[next as usize];
-                let (mut enter, mut leave) = (Vec4::splat(ray.near), Vec4::splat(far));
-                for axis in 0..3 {
-                    let inverse = Vec4::splat(ray.inverse[axis]);
-                    let first = &node.planes[entered[axis]];
-                    let last = &node.planes[(entered[axis] + 3) % 6];
-                    enter = enter.max((*first - Vec4::splat(ray.origins[0][axis])) * inverse);
-                    leave = leave.min((*last - Vec4::splat(ray.origins[1][axis])) * inverse);
-                }
-                let mut lanes = enter.cmple(leave * GROWN).bitmask();
-                let enter = enter.to_array();
-                let bottom = waiting;
-                while lanes != 0 {
-                    let lane = lanes.trailing_zeros() as usize;
-                    lanes &= lanes - 1;
-                    // The nearest on top.
-                    let mut at = waiting;
-                    while at > bottom && stack[at - 1].0 < enter[lane] {
-                        stack[at] = stack[at - 1];
-                        at -= 1;
+        let mut walk = Walk::new(*ray);
+        while walk.step(self, &mut visit) {}
+    }
+
+    /// The same for several rays, which take steps in turns: while one waits for memory, others go on. `visit` gets the index of the
+    /// ray, too; a ray that is `None` is left out.
+    #[inline]
+    pub(super) fn walk_together(
+        &self,
+        rays: &[Option<FrameRay>],
+        mut visit: impl FnMut(usize, &Triangle) -> Next,
+    ) {
+        debug_assert!(rays.len() <= TOGETHER, "{} rays together", rays.len());
+        if self.nodes.is_empty() {
+            return;
+        }
+        let mut walks = [const { None }; TOGETHER];
+        let (mut on_the_way, mut count) = ([0; TOGETHER], 0);
+        for (index, ray) in rays.iter().enumerate() {
+            if let Some(ray) = ray {
+                walks[index] = Some(Walk::new(*ray));
+                on_the_way[count] = index;
+                count += 1;
+            }
+        }
+        while count > 0 {
+            let mut k = 0;
+            while k < count {
+                let index = on_the_way[k];
+                let goes_on = walks[index].as_mut().is_some_and(|walk| {
+                    let goes_on = walk.step(self, &mut |face: &Triangle| visit(index, face));
+                    if goes_on {
+                        walk.look_ahead(self);
                     }
-                    stack[at] = (enter[lane], node.children[lane]);
-                    waiting += 1;
-                }
-            } else {
-                let leaf = &self.leaves[(next & !LEAF) as usize];
-                let mut lanes = leaf.may_meet(ray);
-                while lanes != 0 {
-                    let lane = lanes.trailing_zeros();
-                    lanes &= lanes - 1;
-                    match visit(leaf.first + lane) {
-                        Next::On => {}
-                        Next::UpTo(t) => far = self.way(t, ray.per_t).min(far),
-                        Next::Stop => return,
-                    }
+                    goes_on
+                });
+                if goes_on {
+                    k += 1;
+                } else {
+                    count -= 1;
+                    on_the_way[k] = on_the_way[count];
                 }
             }
-            next = loop {
-                if waiting == 0 {
-                    return;
-                }
-                waiting -= 1;
-                let (enter, child) = stack[waiting];
-                if enter <= far * GROWN {
-                    break child;
-                }
-            };
         }
+    }
+}
+
+/// Rays that walk together.
+pub(super) const TOGETHER: usize = 8;
+
+/// A ray on its way.
+struct Walk {
+    ray: FrameRay,
+    far: f32,
+    /// Which plane of each axis is entered.
+    entered: [usize; 3],
+    /// Where it goes next.
+    next: u32,
+    /// What waits, the nearest on top, and how many do.
+    stack: [(f32, u32); STACK],
+    waiting: usize,
+    /// Something of where it goes next, which is on its way from memory.
+    ahead: f32,
+}
+
+impl Walk {
+    #[inline]
+    fn new(ray: FrameRay) -> Self {
+        let entered = [0, 1, 2].map(|axis: usize| if ray.is_down[axis] { axis + 3 } else { axis });
+        Self { far: ray.far, ray, entered, next: 0, stack: [(0.0, 0); STACK], waiting: 0, ahead: 0.0 }
+    }
+
+    /// Enters the next node or leaf; says whether there is another.
+    #[inline(always)]
+    fn step(&mut self, quads: &Quads, visit: &mut impl FnMut(&Triangle) -> Next) -> bool {
+        let Self { ray, far, entered, next, stack, waiting, .. } = self;
+        if *next & LEAF == 0 {
+            let node = &quads.nodes[*next as usize];
+            let (mut enter, mut leave) = (Vec4::splat(ray.near), Vec4::splat(*far));
+            for axis in 0..3 {
+                let inverse = Vec4::splat(ray.inverse[axis]);
+                let first = &node.planes[entered[axis]];
+                let last = &node.planes[(entered[axis] + 3) % 6];
+                enter = enter.max((*first - Vec4::splat(ray.origins[0][axis])) * inverse);
+                leave = leave.min((*last - Vec4::splat(ray.origins[1][axis])) * inverse);
+            }
+            let mut lanes = enter.cmple(leave * GROWN).bitmask();
+            let enter = enter.to_array();
+            let bottom = *waiting;
+            while lanes != 0 {
+                let lane = lanes.trailing_zeros() as usize;
+                lanes &= lanes - 1;
+                // The nearest on top.
+                let mut at = *waiting;
+                while at > bottom && stack[at - 1].0 < enter[lane] {
+                    stack[at] = stack[at - 1];
+                    at -= 1;
+                }
+                stack[at] = (enter[lane], node.children[lane]);
+                *waiting += 1;
+            }
+        } else {
+            let leaf = &quads.leaves[(*next & !LEAF) as usize];
+            let mut lanes = leaf.may_meet(ray);
+            while lanes != 0 {
+                let lane = lanes.trailing_zeros() as usize;
+                lanes &= lanes - 1;
+                match visit(&leaf.faces[lane]) {
+                    Next::On => {}
+                    Next::UpTo(t) => *far = quads.way(t, ray.per_t).min(*far),
+                    Next::Stop => return false,
+                }
+            }
+        }
+        while *waiting > 0 {
+            *waiting -= 1;
+            let (enter, child) = stack[*waiting];
+            if enter <= *far * GROWN {
+                *next = child;
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Asks memory for where it goes next, and does not wait for it.
+    #[inline(always)]
+    fn look_ahead(&mut self, quads: &Quads) {
+        self.ahead = if self.next & LEAF == 0 {
+            quads.nodes[self.next as usize].planes[0].x
+        } else {
+            quads.leaves[(self.next & !LEAF) as usize].corners[0][0].x
+        };
     }
 }
 
@@ -345,13 +412,149 @@ fn up(x: f64) -> f32 {
     (x as f32).next_up().next_up() + WIDENED
 }
 
-/// The up to four nodes in a node: its children's children, or a child that is a leaf. A root that is a leaf is in itself.
-fn inside(bvh: &Bvh<Triangle>, node: u32) -> impl Iterator<Item = u32> {
-    let children = move |node: u32| match bvh.content(node) {
-        NodeContent::Children([first, _]) => first..first + 2,
-        NodeContent::Faces(_) => node..node + 1,
-    };
-    children(node).flat_map(children)
+/// A face as the build orders it.
+#[derive(Debug, Clone, Copy)]
+struct Item {
+    /// Three times the middle, in the frame.
+    middle: [f32; 3],
+    /// Where it is among the faces.
+    place: u32,
+}
+
+impl Item {
+    fn of(frame: &Frame, place: u32, face: &Triangle) -> Self {
+        let [a, b, c] = face.corners.map(|corner| frame.of_point(corner).as_vec3());
+        Self { middle: (a + b + c).to_array(), place }
+    }
+}
+
+/// Faces of which a part of the nodes and leaves is made, and the indices of the first of these.
+struct Part<'p> {
+    items: &'p mut [Item],
+    nodes: &'p mut [Node],
+    leaves: &'p mut [Leaf],
+    node: u32,
+    leaf: u32,
+}
+
+/// How many nodes the hierarchies of `leaves` leaves and of one more have: none for one leaf, which is a child.
+fn nodes_of(leaves: usize) -> [usize; 2] {
+    if leaves < 2 {
+        return [0, usize::from(leaves == 1)];
+    }
+    // The quarters of both have a quarter of the leaves, rounded down, or one more.
+    let least = leaves / 4;
+    let below = nodes_of(least);
+    [leaves, leaves + 1].map(|leaves| {
+        let quarters = of_halves(leaves).into_iter().flat_map(of_halves);
+        1 + quarters.map(|quarter| if quarter == 0 { 0 } else { below[quarter - least] }).sum::<usize>()
+    })
+}
+
+/// How many leaves the halves of `leaves` have.
+fn of_halves(leaves: usize) -> [usize; 2] {
+    if leaves == 1 { [0, 1] } else { [leaves / 2, leaves - leaves / 2] }
+}
+
+/// A box in the frame.
+type Bounds = [[f32; 3]; 2];
+
+/// Faces of which one thread builds the hierarchy by itself.
+const FACES_PER_PIECE: usize = 4096;
+
+impl Part<'_> {
+    /// Fills the first node, and all below it. Gives the box.
+    fn fill(self, frame: &Frame, faces: &[Triangle]) -> Bounds {
+        let Part { items, nodes, leaves, node: first, leaf } = self;
+        let is_large = items.len() > FACES_PER_PIECE;
+        let (node, nodes) = nodes.split_first_mut().expect("a node of a part");
+        let below = Part { items, nodes, leaves, node: first + 1, leaf };
+        let mut children = Vec::with_capacity(WIDTH);
+        for half in below.split(|leaves| of_halves(leaves).into_iter().map(|half| nodes_of(half)[0]).sum()) {
+            children.extend(half.split(|leaves| nodes_of(leaves)[0]));
+        }
+        let what: Vec<u32> = children
+            .iter()
+            .map(|part| if part.leaves.len() == 1 { LEAF | part.leaf } else { part.node })
+            .collect();
+        let fill = |part: Part<'_>| {
+            if part.leaves.len() == 1 { part.fill_leaf(frame, faces) } else { part.fill(frame, faces) }
+        };
+        let boxes: Vec<Bounds> = if is_large {
+            children.into_par_iter().map(fill).collect()
+        } else {
+            children.into_iter().map(fill).collect()
+        };
+        let mut all = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+        for (lane, ([low, high], child)) in boxes.iter().zip(what).enumerate() {
+            for axis in 0..3 {
+                node.planes[axis][lane] = low[axis];
+                node.planes[axis + 3][lane] = high[axis];
+                all[0][axis] = all[0][axis].min(low[axis]);
+                all[1][axis] = all[1][axis].max(high[axis]);
+            }
+            node.children[lane] = child;
+        }
+        all
+    }
+
+    /// The halves along the longest side, of which the first has full leaves; or itself, if it is one leaf.
+    /// `nodes` says how many nodes a half of so many leaves has.
+    fn split(self, nodes: impl Fn(usize) -> usize) -> Vec<Self> {
+        let quads = self.leaves.len();
+        if quads == 1 {
+            return vec![self];
+        }
+        let (of_first, middle) = (nodes(quads / 2), WIDTH * (quads / 2));
+        let Part { items, nodes, leaves, node, leaf } = self;
+        let mut bounds = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        for item in &*items {
+            let middle = Vec3::from_array(item.middle);
+            bounds = (bounds.0.min(middle), bounds.1.max(middle));
+        }
+        let axis = (bounds.1 - bounds.0).max_position();
+        items.select_nth_unstable_by(middle, |a, b| {
+            a.middle[axis].total_cmp(&b.middle[axis]).then(a.place.cmp(&b.place))
+        });
+        let (items, other_items) = items.split_at_mut(middle);
+        let (leaves, other_leaves) = leaves.split_at_mut(quads / 2);
+        let (nodes, other_nodes) = nodes.split_at_mut(of_first);
+        vec![
+            Part { items, nodes, leaves, node, leaf },
+            Part {
+                items: other_items,
+                nodes: other_nodes,
+                leaves: other_leaves,
+                node: node + of_first as u32,
+                leaf: leaf + (quads / 2) as u32,
+            },
+        ]
+    }
+
+    /// Fills the only leaf. Gives the box.
+    fn fill_leaf(self, frame: &Frame, faces: &[Triangle]) -> Bounds {
+        let leaf = &mut self.leaves[0];
+        let mut bounds = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        // What belongs together, whatever the order of the split.
+        self.items.sort_unstable_by_key(|item| item.place);
+        for (lane, item) in self.items.iter().enumerate() {
+            let face = faces[item.place as usize];
+            leaf.faces[lane] = face;
+            let framed = face.corners.map(|corner| frame.of_point(corner));
+            let corners = framed.map(|corner| corner.as_vec3());
+            for k in 0..3 {
+                bounds = (bounds.0.min(framed[k]), bounds.1.max(framed[k]));
+                for axis in 0..3 {
+                    leaf.corners[k][axis][lane] = corners[k][axis];
+                }
+                // The very difference that walks form.
+                let edge = corners[(k + 1) % 3] - corners[k];
+                leaf.longest = leaf.longest.max(edge.abs().max_element());
+            }
+            leaf.present |= 1 << lane;
+        }
+        [bounds.0.to_array().map(down), bounds.1.to_array().map(up)]
+    }
 }
 
 #[cfg(test)]

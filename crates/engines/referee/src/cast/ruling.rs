@@ -142,7 +142,7 @@ struct Trial<'a> {
 
 impl Trial<'_> {
     /// Displacements that may excuse the answer, none larger than is charged.
-    fn displacements(&self, first: &[&Triangle]) -> Vec<[f64; 2]> {
+    fn displacements(&self, first: &[Triangle]) -> Vec<[f64; 2]> {
         let most = self.cast.lateral_error(self.ray, self.precision);
         let mut tried = vec![DVec2::ZERO];
         let query = QueryRay::new(self.ray);

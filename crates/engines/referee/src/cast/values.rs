@@ -65,7 +65,7 @@ impl ExactCast<'_> {
         let face = *self.nearest(ray, sides).first()?;
         let query = QueryRay::new(ray);
         let side = face.met_side(&query, sides)?;
-        Some(CastMeeting::new(ray, query, *face, side).hit())
+        Some(CastMeeting::new(ray, query, face, side).hit())
     }
 }
 

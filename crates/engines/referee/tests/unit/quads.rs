@@ -118,25 +118,55 @@ fn every_face_that_is_met_is_shown_and_few_others() {
                 }
                 let Some(in_frame) = tree.quads.ray(&ray) else { continue };
                 asked += 1;
-                let mut places = Vec::new();
-                tree.quads.walk(&in_frame, |place| {
-                    places.push(place as usize);
+                let mut ids = Vec::new();
+                tree.quads.walk(&in_frame, |face| {
+                    ids.push(face.id);
                     Next::On
                 });
                 let query = QueryRay::new(&ray);
-                for (place, face) in all.iter().enumerate() {
+                for face in all {
                     if face.met_side(&query, Sides::Both).is_some() {
                         met += 1;
-                        assert!(places.contains(&place), "{name} of {size} at {by}: {face:?} by {ray:?}");
+                        assert!(ids.contains(&face.id), "{name} of {size} at {by}: {face:?} by {ray:?}");
                     }
                 }
                 // From far away f32 can tell little.
-                shown += if far < 10.0 { places.len() } else { 0 };
+                shown += if far < 10.0 { ids.len() } else { 0 };
             }
             assert!(asked > 1000 && met > 300, "{name} of {size} at {by}: {asked} rays, {met} faces met");
             let share = shown as f64 / (0.5 * asked as f64 * all.len() as f64);
             assert!(share < most, "{name} of {size} at {by}: {share} of all faces shown");
         }
+    }
+}
+
+#[test]
+fn every_face_is_in_a_leaf_whatever_their_number() {
+    let mut random = SplitMix64(5);
+    let all = moved_and_scaled(&scattered(&mut random, 0.1), DVec3::ZERO, 1.0).0;
+    for count in (0..=70).chain([128, 129, 255, 256, 257, 300]) {
+        let faces: Vec<Triangle> = (0..count).map(|id| Triangle::of(&all, FaceId(id))).collect();
+        let quads = Quads::of(&faces);
+        let mut found = Vec::new();
+        let mut waiting: Vec<u32> = (!quads.nodes.is_empty()).then_some(0).into_iter().collect();
+        let mut nodes = 0;
+        while let Some(at) = waiting.pop() {
+            let node = &quads.nodes[at as usize];
+            nodes += 1;
+            for lane in (0..WIDTH).filter(|&lane| node.planes[0][lane] <= node.planes[3][lane]) {
+                match node.children[lane] {
+                    leaf if leaf & LEAF != 0 => {
+                        let leaf = &quads.leaves[(leaf & !LEAF) as usize];
+                        let present = (0..WIDTH).filter(|lane| leaf.present >> lane & 1 == 1);
+                        found.extend(present.map(|lane| leaf.faces[lane].id.0));
+                    }
+                    node => waiting.push(node),
+                }
+            }
+        }
+        found.sort_unstable();
+        assert_eq!(found, (0..count).collect::<Vec<_>>());
+        assert_eq!((nodes, quads.leaves.len()), (quads.nodes.len(), (count as usize).div_ceil(WIDTH)));
     }
 }
 
@@ -153,8 +183,8 @@ fn a_walk_ends_where_its_visitor_says() {
     let in_frame = tree.quads.ray(&ray).expect("a ray that is near");
     let seen = |next: fn() -> Next| {
         let mut seen = Vec::new();
-        tree.quads.walk(&in_frame, |place| {
-            seen.push(tree.bvh.face(place).id.0);
+        tree.quads.walk(&in_frame, |face| {
+            seen.push(face.id.0);
             next()
         });
         seen
@@ -173,6 +203,7 @@ fn rays_from_far_away_have_the_same_answers() {
     let (mesh, faces) = moved_and_scaled(&lattice(), DVec3::ZERO, 1.0);
     let cast = ExactCast::new(&mesh);
     let (mut near, mut distant, mut hits) = (0, 0, 0);
+    let mut all = Vec::new();
     for k in 0..400 {
         let far = [1e2, 1e4, 1e6, 1e12][k % 4];
         let face = faces[random.below(512) as usize];
@@ -195,14 +226,30 @@ fn rays_from_far_away_have_the_same_answers() {
             .filter(|face| first.is_some_and(|first| face.compare(first, &query).is_eq()))
             .collect();
         ties.sort_by_key(|face| face.id);
-        let ties: Vec<_> = ties.iter().map(|face| face.id).collect();
+        let ties: Vec<FaceId> = ties.iter().map(|face| face.id).collect();
         hits += usize::from(!ties.is_empty());
         assert_eq!(cast.first(&ray, Sides::Both), ties, "{ray:?}");
         assert_eq!(cast.any(&ray, Sides::Both), !ties.is_empty(), "{ray:?}");
+        all.push((ray, ties));
         assert_eq!(
             cast.all(&ray, Sides::Both).iter().map(|group| group.faces.len()).sum::<usize>(),
             met.len()
         );
+    }
+    // Together they have the same, whatever their number.
+    for count in [0, 1, TOGETHER - 1, TOGETHER, TOGETHER + 1, all.len()] {
+        let rays: Vec<CastRay> = all[..count].iter().map(|(ray, _)| *ray).collect();
+        let expected =
+            all[..count].iter().map(|(_, ties)| ties.first().map(|face| (*face, ties.len() as u32)));
+        let expected: Vec<Option<(FaceId, u32)>> = expected.collect();
+        let mut found = Vec::new();
+        cast.first_meetings(&rays, Sides::Both, |index, read| {
+            assert_eq!(index, found.len());
+            found.push(read.hit().map(|(meeting, ties)| (meeting.face(), *ties)));
+        });
+        assert_eq!(found, expected);
+        let is_met: Vec<bool> = expected.iter().map(Option::is_some).collect();
+        assert_eq!(cast.any_of(&rays, Sides::Both), is_met);
     }
     assert!(near > 100 && distant > 100 && hits > 100, "{near} near, {distant} far away, {hits} hits");
 }

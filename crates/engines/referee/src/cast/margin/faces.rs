@@ -41,12 +41,12 @@ enum EventKind {
 }
 
 impl ExactCast<'_> {
-    pub(super) fn face_margin(&self, frame: &Frame<'_>, nearest: &[&Triangle], sides: Sides) -> Margin {
+    pub(super) fn face_margin(&self, frame: &Frame<'_>, nearest: &[Triangle], sides: Sides) -> Margin {
         let cap = self.tree.diagonal;
         let query = QueryRay::new(frame.ray);
         let seen = |face: &'_ Triangle| face.seen_side(&query);
         let nearest: Vec<SeenFace<'_>> =
-            nearest.iter().filter_map(|&face| Some(SeenFace { face, side: seen(face)? })).collect();
+            nearest.iter().filter_map(|face| Some(SeenFace { face, side: seen(face)? })).collect();
         // Thousands of faces may lie in one place: those with the same corners have the same conditions.
         let mut places = BTreeSet::new();
         let bits = |face: &Triangle| face.corners.map(|corner| corner.to_array().map(f64::to_bits));
