@@ -60,6 +60,19 @@ fn slender(random: &mut SplitMix64) -> Case {
     (ray, [a, b, a + (b - a) * 0.3 + width * point(random)])
 }
 
+/// Ends where the face is, but for the last digits of t.
+fn ends_at_a_face(random: &mut SplitMix64) -> Case {
+    let (ray, corners) = anywhere(random);
+    let [a, b, c] = corners;
+    let target = (a + b + c) / 3.0 + 0.1 * (b - a) * random.part();
+    let ray = CastRay { direction: target - ray.origin, ..ray };
+    let normal = (b - a).cross(c - a);
+    let t = normal.dot(a - ray.origin) / normal.dot(ray.direction);
+    let t = t * (1.0 + f64::EPSILON * f64::from(random.below(5)) - 2.0 * f64::EPSILON);
+    let ray = if random.below(2) == 0 { CastRay { t_min: t, ..ray } } else { CastRay { t_max: t, ..ray } };
+    (ray, corners)
+}
+
 /// How a ray meets a face, by exact arithmetic alone.
 fn met_exactly(ray: &CastRay, face: &Triangle, sides: Sides) -> Option<Side> {
     let numbers = RayNumbers::<Dyadic>::of(ray);
@@ -80,12 +93,13 @@ fn met_exactly(ray: &CastRay, face: &Triangle, sides: Sides) -> Option<Side> {
 
 #[test]
 fn every_sign_and_every_hit_is_that_of_exact_arithmetic() {
-    let families: [(&str, Family); 5] = [
+    let families: [(&str, Family); 6] = [
         ("anywhere", anywhere),
         ("lattice", lattice),
         ("at an edge", at_an_edge),
         ("huge and tiny", huge_and_tiny),
         ("slender", slender),
+        ("ends at a face", ends_at_a_face),
     ];
     let mut random = SplitMix64(45);
     let mut ways = Vec::new();
@@ -105,6 +119,23 @@ fn every_sign_and_every_hit_is_that_of_exact_arithmetic() {
                 let side = met_exactly(&ray, &face, sides);
                 assert_eq!(met.map(|met| met.side), side, "{name}: {corners:?} by {ray:?}");
                 hits += usize::from(side.is_some());
+                // (h - t g) g is not negative up to the exact t, and not positive from there on.
+                let exact = query.exact();
+                let (height, approach) = (face.height(exact), face.approach(exact));
+                let off = |t: f64| match t.is_finite() {
+                    true => height
+                        .sub(&approach.mul(&Dyadic::of(t)))
+                        .mul(&approach)
+                        .sign()
+                        .expect("an exact sign"),
+                    false => 0.0_f64.total_cmp(&t),
+                };
+                if let Some(Met { t, .. }) = met {
+                    assert!(
+                        off(t.low) != Ordering::Less && off(t.high) != Ordering::Greater,
+                        "{name}: {t:?}"
+                    );
+                }
             }
         }
         assert!(hits > 100, "{name}: {hits} hits are too few to tell");
@@ -119,7 +150,7 @@ fn every_sign_and_every_hit_is_that_of_exact_arithmetic() {
         assert!(filter > 1000 && plane > 1000 && exact > 1000, "{name}: {:?}", of(name));
     }
     // Where plain f64 underflows, and at the ends of rays.
-    for name in ["huge and tiny", "lattice"] {
+    for name in ["huge and tiny", "lattice", "ends at a face"] {
         let [_, _, interval, exact] = of(name);
         assert!(interval > 100 && exact > 1000, "{name}: {:?}", of(name));
     }
