@@ -12,10 +12,9 @@
 //! ```text
 //! distinct       equal boxes of faces
 //! grouped_build  the obvhs trees of groups of faces, built in bounded time for any input
-//! wide_tree      the same trees as one with eight boxes a node; the walk of many rays at once
+//! wide_tree      the same trees as one with eight boxes a node; the walks of many rays at once and of one
 //! traced_ray     one ray, for triangles and for boxes
 //! triangle       the watertight test: does a ray meet a face, and at which t
-//! box_tree       the same trees as one of obvhs, and faces in the order of its leaves
 //! hierarchy      the terrain's faces in padded boxes
 //! lanes          work compiled for wide lanes too
 //! tile           64 rays from one point, tested together
@@ -52,7 +51,6 @@
 //! assert_eq!([0, 1, 2].map(|i| range.at(i, 0).get()), [Some(12.5), Some(10.0), Some(12.5)]);
 //! ```
 
-mod box_tree;
 mod camera;
 mod cast;
 mod closest_hit;

@@ -12,7 +12,7 @@ use bytemuck::Zeroable;
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::node::Bvh2Node;
-use obvhs::ray::safe_inverse;
+use obvhs::ray::{Ray, safe_inverse};
 use rayon::prelude::*;
 
 use crate::grouped_build::Forest;
@@ -184,19 +184,61 @@ impl WideTree {
                     leave[lane] = if farthest < leave[lane] { farthest } else { leave[lane] };
                 }
             }
-            // The nearest on top of the stack.
-            let bottom = stack.len();
-            for lane in 0..WIDTH {
-                if enter[lane] <= leave[lane] {
-                    let waiting = Waiting { near: enter[lane], child: node.child[lane], end: node.end[lane] };
-                    stack.push(waiting);
-                    let mut at = stack.len() - 1;
-                    while at > bottom && stack[at - 1].near < waiting.near {
-                        stack[at] = stack[at - 1];
-                        at -= 1;
-                    }
-                    stack[at] = waiting;
+            Self::wait(node, &enter, &leave, stack);
+        }
+    }
+
+    /// The same for a single ray, as obvhs would walk: a direction's small component counts as one that is not, so that the ray
+    /// is limited along each axis.
+    #[inline(always)]
+    pub(crate) fn walk_ray(&self, stack: &mut Vec<Waiting>, ray: &Ray, visitor: &mut impl Visitor) {
+        if self.nodes.is_empty() {
+            return;
+        }
+        let (origin, inverse, mut far) = (ray.origin.to_array(), ray.inv_direction.to_array(), ray.tmax);
+        stack.clear();
+        stack.push(Waiting { near: 0.0, child: 0, end: 0 });
+        while let Some(Waiting { near, child, end }) = stack.pop() {
+            if near > far {
+                continue;
+            }
+            if child & LEAF != 0 {
+                if visitor.leaf((child & !LEAF) as usize..end as usize, &mut far) == Next::Stop {
+                    return;
                 }
+                continue;
+            }
+            let node = &self.nodes[child as usize];
+            let mut enter = [0.0_f32; WIDTH];
+            let mut leave = [far; WIDTH];
+            for axis in 0..3 {
+                let (first, last) = if inverse[axis] > 0.0 { (axis, axis + 3) } else { (axis + 3, axis) };
+                let (first, last) = (&node.bounds[first], &node.bounds[last]);
+                for lane in 0..WIDTH {
+                    let to_first = (first[lane] - origin[axis]) * inverse[axis];
+                    let to_last = (last[lane] - origin[axis]) * inverse[axis];
+                    enter[lane] = if to_first > enter[lane] { to_first } else { enter[lane] };
+                    leave[lane] = if to_last < leave[lane] { to_last } else { leave[lane] };
+                }
+            }
+            Self::wait(node, &enter, &leave, stack);
+        }
+    }
+
+    /// Lets the boxes of a node wait that are entered before they are left, the nearest on top of the stack.
+    #[inline(always)]
+    fn wait(node: &Node, enter: &[f32; WIDTH], leave: &[f32; WIDTH], stack: &mut Vec<Waiting>) {
+        let bottom = stack.len();
+        for lane in 0..WIDTH {
+            if enter[lane] <= leave[lane] {
+                let waiting = Waiting { near: enter[lane], child: node.child[lane], end: node.end[lane] };
+                stack.push(waiting);
+                let mut at = stack.len() - 1;
+                while at > bottom && stack[at - 1].near < waiting.near {
+                    stack[at] = stack[at - 1];
+                    at -= 1;
+                }
+                stack[at] = waiting;
             }
         }
     }

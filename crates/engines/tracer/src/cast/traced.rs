@@ -32,7 +32,7 @@ impl CastFace {
     }
 
     /// The crossing of the ray with this face, within the ray's ends and on a side that counts.
-    #[inline]
+    #[inline(always)]
     pub(super) fn crossing(&self, given: &CastRay, scaled: &ScaledRay, sides: Sides) -> Option<Crossing> {
         let crossing = intersect::<true>(self.corners, &scaled.ray)?;
         if crossing.n_dot_q == 0.0 || sides == Sides::Fronts && crossing.n_dot_q > 0.0 {

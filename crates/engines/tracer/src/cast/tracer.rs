@@ -1,13 +1,16 @@
 //! The tree of a mesh for any rays, and its traversals.
 
-use obvhs::faststack::{FastStack, HeapStack};
-use obvhs::ray::RayHit;
+use std::ops::Range;
+
+use obvhs::ray::Ray as BoxRay;
 use rayon::prelude::*;
 use raypencil_scene::{CastRay, FaceId, RaySet, Sides, Triangles};
 
 use super::frame::{Frame, ScaledRay, Walk, way_to};
 use super::traced::{CastFace, Crossing, TracedHit};
-use crate::box_tree::BoxTree;
+use crate::grouped_build::Forest;
+use crate::lanes::{self, Instructions, Work};
+use crate::wide_tree::{self, Visitor, Waiting, WideTree};
 
 /// Any rays on a mesh, traced in `f64`.
 ///
@@ -28,7 +31,9 @@ use crate::box_tree::BoxTree;
 #[derive(Debug)]
 pub struct TracerCast {
     frame: Frame,
-    boxes: BoxTree<CastFace>,
+    boxes: WideTree,
+    /// In the order of the boxes' entries.
+    faces: Vec<CastFace>,
 }
 
 impl TracerCast {
@@ -40,12 +45,15 @@ impl TracerCast {
             let face = face(index);
             face.has_area().then(|| frame.padded_box(face.corners))
         };
-        Self { boxes: BoxTree::build(mesh.faces().len(), box_of, face), frame }
+        let forest = Forest::build(mesh.faces().len(), box_of);
+        let (order, first_faces) = forest.faces();
+        let boxes = WideTree::collapse(&forest, &first_faces);
+        Self { boxes, faces: order.into_par_iter().map(face).collect(), frame }
     }
 
     /// A traversal with its own stack, for many rays on one thread.
     pub fn traverser(&self) -> CastTraverser<'_> {
-        CastTraverser { cast: self, stack: HeapStack::new_with_capacity(self.boxes.stack_size()) }
+        CastTraverser { cast: self, stack: self.boxes.stack() }
     }
 
     /// The first hit of each ray of a set, on all threads; also one that is [too near](CastRay::is_too_near) for a sensor.
@@ -58,7 +66,7 @@ impl TracerCast {
 /// A traversal with its own stack.
 pub struct CastTraverser<'t> {
     cast: &'t TracerCast,
-    stack: HeapStack<u32>,
+    stack: Vec<Waiting>,
 }
 
 impl std::fmt::Debug for CastTraverser<'_> {
@@ -83,14 +91,18 @@ impl CastTraverser<'_> {
     pub fn first(&mut self, ray: &CastRay, sides: Sides) -> Option<TracedHit> {
         let scaled = self.cast.frame.ray(ray);
         let mut nearest: Option<Crossing> = None;
-        self.walk(&scaled, |face| {
-            let Some(crossing) = face.crossing(ray, &scaled, sides) else { return Next::On };
-            if nearest.as_ref().is_some_and(|nearest| !crossing.is_before(nearest)) {
-                return Next::On;
-            }
-            nearest = Some(crossing);
-            Next::UpTo(crossing.scaled_t)
-        });
+        self.walk(
+            &scaled,
+            #[inline(always)]
+            |face| {
+                let Some(crossing) = face.crossing(ray, &scaled, sides) else { return Next::On };
+                if nearest.as_ref().is_some_and(|nearest| !crossing.is_before(nearest)) {
+                    return Next::On;
+                }
+                nearest = Some(crossing);
+                Next::UpTo(crossing.scaled_t)
+            },
+        );
         nearest.map(|crossing| crossing.hit(ray, &scaled))
     }
 
@@ -98,10 +110,14 @@ impl CastTraverser<'_> {
     pub fn any(&mut self, ray: &CastRay, sides: Sides) -> bool {
         let scaled = self.cast.frame.ray(ray);
         let mut is_met = false;
-        self.walk(&scaled, |face| {
-            is_met = face.crossing(ray, &scaled, sides).is_some();
-            if is_met { Next::Stop } else { Next::On }
-        });
+        self.walk(
+            &scaled,
+            #[inline(always)]
+            |face| {
+                is_met = face.crossing(ray, &scaled, sides).is_some();
+                if is_met { Next::Stop } else { Next::On }
+            },
+        );
         is_met
     }
 
@@ -109,10 +125,14 @@ impl CastTraverser<'_> {
     pub fn all(&mut self, ray: &CastRay, sides: Sides) -> Vec<TracedHit> {
         let scaled = self.cast.frame.ray(ray);
         let mut met = Vec::new();
-        self.walk(&scaled, |face| {
-            met.extend(face.crossing(ray, &scaled, sides));
-            Next::On
-        });
+        self.walk(
+            &scaled,
+            #[inline(always)]
+            |face| {
+                met.extend(face.crossing(ray, &scaled, sides));
+                Next::On
+            },
+        );
         met.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.face.id.cmp(&b.face.id)));
         met.iter().map(|crossing| crossing.hit(ray, &scaled)).collect()
     }
@@ -120,33 +140,62 @@ impl CastTraverser<'_> {
     /// Shows the faces that the ray may meet, until one says that it is enough.
     #[inline]
     fn walk(&mut self, scaled: &ScaledRay, mut visit: impl FnMut(&CastFace) -> Next) {
-        let boxes = &self.cast.boxes;
-        // A walk that ended early leaves entries of its own ray on the stack.
-        self.stack.clear();
+        let TracerCast { boxes, faces, .. } = self.cast;
         match scaled.walk {
             Walk::Nothing => {}
             Walk::AllFaces => {
-                for face in boxes.faces() {
+                for face in faces {
                     if matches!(visit(face), Next::Stop) {
                         return;
                     }
                 }
             }
             Walk::Tree { box_ray, entry } => {
-                let leaf =
-                    |node: &obvhs::bvh2::node::Bvh2Node, box_ray: &mut obvhs::ray::Ray, _: &mut RayHit| {
-                        for face in boxes.leaf_faces(node.first_index, node.prim_count) {
-                            match visit(face) {
-                                Next::On => {}
-                                Next::UpTo(t) => box_ray.tmax = way_to(t * scaled.ray.metres_per_t, entry),
-                                Next::Stop => return false,
-                            }
-                        }
-                        true
-                    };
-                boxes.tree().ray_traverse_dynamic(&mut self.stack, box_ray, &mut RayHit::none(), leaf);
+                let seeker = Seeker { faces, entry, range_per_t: scaled.ray.metres_per_t, visit };
+                let walk = TreeWalk { boxes, stack: &mut self.stack, box_ray, seeker };
+                lanes::run(Instructions::Detected, walk);
             }
         }
+    }
+}
+
+/// Shows the faces in leaves.
+struct Seeker<'a, V> {
+    faces: &'a [CastFace],
+    entry: f64,
+    /// Scaled.
+    range_per_t: f64,
+    visit: V,
+}
+
+impl<V: FnMut(&CastFace) -> Next> Visitor for Seeker<'_, V> {
+    #[inline(always)]
+    fn leaf(&mut self, entries: Range<usize>, far: &mut f32) -> wide_tree::Next {
+        for face in &self.faces[entries] {
+            match (self.visit)(face) {
+                Next::On => {}
+                Next::UpTo(t) => *far = way_to(t * self.range_per_t, self.entry),
+                Next::Stop => return wide_tree::Next::Stop,
+            }
+        }
+        wide_tree::Next::On
+    }
+}
+
+/// A walk of one ray.
+struct TreeWalk<'a, V> {
+    boxes: &'a WideTree,
+    stack: &'a mut Vec<Waiting>,
+    box_ray: BoxRay,
+    seeker: Seeker<'a, V>,
+}
+
+impl<V: FnMut(&CastFace) -> Next> Work for TreeWalk<'_, V> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(mut self) {
+        self.boxes.walk_ray(self.stack, &self.box_ray, &mut self.seeker);
     }
 }
 

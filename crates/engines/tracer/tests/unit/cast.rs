@@ -10,7 +10,7 @@ use super::*;
 fn exhaustive(cast: &TracerCast, ray: &CastRay, sides: Sides) -> Vec<Crossing> {
     let scaled = cast.frame.ray(ray);
     let mut met: Vec<Crossing> =
-        cast.boxes.faces().iter().filter_map(|face| face.crossing(ray, &scaled, sides)).collect();
+        cast.faces.iter().filter_map(|face| face.crossing(ray, &scaled, sides)).collect();
     met.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.face.id.cmp(&b.face.id)));
     met
 }

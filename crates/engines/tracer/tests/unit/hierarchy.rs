@@ -1,14 +1,11 @@
-//! Unit tests of `hierarchy`: trace distance, padding, stack.
+//! Unit tests of `hierarchy`: trace distance, padding.
 
 use std::sync::Arc;
 
 use glam::DVec3;
-use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::node::Bvh2Node;
 use raypencil_scene::{Atmosphere, Camera, FluxModel, Lens, Material, Pose, Profile};
 
 use super::*;
-use crate::box_tree::max_depth;
 
 #[test]
 fn the_trace_distance_is_the_length_of_the_longest_ray() {
@@ -67,17 +64,4 @@ fn a_box_is_padded_by_the_derived_bound() {
     // The coordinate of largest magnitude may be negative.
     let other = padded_box(&[[-1.0, -2.0, -3.0], [4.0, -5.0, -6.0], [-7.0, 8.0, -9.0]], 100.0);
     assert_eq!((other.min, other.max), (-padded.max, -padded.min));
-}
-
-#[test]
-fn the_stack_holds_the_longest_path_to_a_leaf() {
-    let leaf = Bvh2Node::new(Aabb::INVALID, 1, 0);
-    let inner = |first: u32| Bvh2Node::new(Aabb::INVALID, 0, first);
-    let tree = |nodes: Vec<Bvh2Node>| Bvh2 { nodes, ..Bvh2::default() };
-    assert_eq!(max_depth(&Bvh2::default()), 0);
-    assert_eq!(max_depth(&tree(vec![leaf])), 0);
-    assert_eq!(max_depth(&tree(vec![inner(1), leaf, leaf])), 1);
-    // The longest path through the first child, and through the second.
-    assert_eq!(max_depth(&tree(vec![inner(1), inner(3), leaf, inner(5), leaf, leaf, leaf])), 3);
-    assert_eq!(max_depth(&tree(vec![inner(1), leaf, inner(3), leaf, inner(5), leaf, leaf])), 3);
 }

@@ -71,3 +71,55 @@ fn a_walk_shows_the_faces_whose_boxes_the_rays_meet_and_few_others() {
     assert!(!met.is_empty() && met.iter().all(|face| faces.contains(face)), "{met:?} of {faces:?}");
     assert!(faces.len() < 64, "{} faces", faces.len());
 }
+
+/// The faces that a walk of one ray shows.
+fn walk_ray(boxes: &[Aabb], ray: &Ray) -> Vec<u32> {
+    let forest = Forest::build(boxes.len(), |face| Some(boxes[face as usize]));
+    let (faces, first_faces) = forest.faces();
+    let tree = WideTree::collapse(&forest, &first_faces);
+    let mut shown = Shown::default();
+    let mut stack = tree.stack();
+    let capacity = stack.capacity();
+    tree.walk_ray(&mut stack, ray, &mut shown);
+    assert_eq!(stack.capacity(), capacity, "the stack was too small");
+    shown.0.into_iter().map(|at| faces[at]).collect()
+}
+
+#[test]
+fn a_walk_of_one_ray_shows_the_faces_whose_boxes_it_meets_and_few_others() {
+    let boxes = grid(4096);
+    let mut met_by_all = 0;
+    for k in 0..600_u32 {
+        let part = |step: u32| ((k + 1) * step % 1021) as f32 / 1021.0;
+        let origin = Vec3A::new(64.0 * part(577), 64.0 * part(331), 40.0 * part(197) - 15.0);
+        // Along each axis both ways, within a plane, and aslant.
+        let mut direction = Vec3A::new(part(409) - 0.5, part(719) - 0.5, part(887) - 0.5);
+        if k % 4 == 0 {
+            direction[(k / 4 % 3) as usize] = 0.0;
+        } else if k % 4 == 1 {
+            direction = Vec3A::AXES[(k / 4 % 3) as usize] * if k % 8 == 1 { 1.0 } else { -1.0 };
+        }
+        let ray = Ray::new(origin, direction.normalize(), 0.0, if k % 3 == 0 { 9.0 } else { 100.0 });
+        let faces = walk_ray(&boxes, &ray);
+        let meets = |face: &u32| {
+            let Aabb { min, max } = boxes[*face as usize];
+            let (a, b) = ((min - ray.origin) * ray.inv_direction, (max - ray.origin) * ray.inv_direction);
+            a.min(b).max_element().max(0.0) <= a.max(b).min_element().min(ray.tmax)
+        };
+        let met: Vec<u32> = (0..4096).filter(meets).collect();
+        assert!(met.iter().all(|face| faces.contains(face)), "{ray:?}: {met:?} of {faces:?}");
+        assert!(faces.len() <= 4 * met.len() + 64, "{ray:?}: {} faces for {}", faces.len(), met.len());
+        met_by_all += met.len();
+    }
+    assert!(met_by_all > 300, "{met_by_all}");
+}
+
+#[test]
+fn boxes_in_one_place_are_shown_with_all_their_faces() {
+    // Three groups and more, each of them a single leaf; and no face at all.
+    let ray = Ray::new(Vec3A::new(0.5, 0.5, 9.0), Vec3A::NEG_Z, 0.0, 100.0);
+    let mut faces = walk_ray(&[Aabb::new(Vec3A::ZERO, Vec3A::ONE); 6000], &ray);
+    faces.sort_unstable();
+    assert!(faces.into_iter().eq(0..6000));
+    assert!(walk_ray(&[], &ray).is_empty());
+}
