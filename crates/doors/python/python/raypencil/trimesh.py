@@ -31,7 +31,7 @@ class RayMeshIntersector:
     Args:
         mesh: a ``trimesh.Trimesh``, or anything with ``vertices`` (n, 3) and ``faces`` (m, 3). A mesh of trimesh may change:
             it is looked at again for each call.
-        with_: ``"referee"`` is exact; ``"tracer"`` is a few times as fast (docs/evidence/speed.md) and rounds. It answers
+        with_: ``"referee"`` is exact; ``"tracer"`` is up to twice as fast (docs/evidence/speed.md) and rounds. It answers
             :meth:`intersects_first` and :meth:`intersects_any`; the others are exact in any case.
     """
 
