@@ -143,6 +143,13 @@ impl<'t> CastTrial<'t> {
             if is_shift && rules.numbers != Numbers::SCENE {
                 return None;
             }
+            // So do cells in another order and a sensor that looks elsewhere altogether: upside down, rows are reversed.
+            let is_order = correction.is_some_and(|one| {
+                matches!(one.mistake, Mistake::RowsReversed | Mistake::ColumnsReversed | Mistake::Transposed)
+            });
+            if is_order && matches!(mistake, Mistake::PoseInverted | Mistake::QuaternionOrder) {
+                return None;
+            }
             let first = first.get_or_init(|| self.render(self.first_places(), *rules));
             let tally = self.tally(*rules, first, correction)?;
             let mistakes = correction.map(|one| one.mistake).into_iter().chain([*mistake]).collect();

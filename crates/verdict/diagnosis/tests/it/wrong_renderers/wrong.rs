@@ -79,7 +79,8 @@ impl Wrong {
                     let of_sensor = self.truth.iter().filter(|(of, _)| of == sensor);
                     of_sensor.clone().flat_map(|(_, all)| all).any(|one| is_same(one, told))
                         || is_sum(of_sensor.clone().map(|(_, all)| all.as_slice()), told)
-                        || is_turn_of_all(of_sensor.map(|(_, all)| all.as_slice()), told)
+                        || is_turn_of_all(of_sensor.clone().map(|(_, all)| all.as_slice()), told)
+                        || is_line_of_all(of_sensor.map(|(_, all)| all.as_slice()), told)
                 })
             })
         };
@@ -105,6 +106,21 @@ fn is_sum<'m>(made: impl Iterator<Item = &'m [Mistake]>, told: &Mistake) -> bool
         sum = [sum[0] + dx, sum[1] + dy];
     }
     cells_off(told).is_some_and(|told| (0..2).all(|k| (told[k] - sum[k]).abs() < 1e-3))
+}
+
+/// Whether what is told is the factor and the offset that several of them come to.
+fn is_line_of_all<'m>(made: impl Iterator<Item = &'m [Mistake]>, told: &Mistake) -> bool {
+    let line = |mistake: &Mistake| match mistake {
+        Mistake::Affine { factor, offset, .. } => Some([*factor, *offset]),
+        _ => None,
+    };
+    let then = |[f, o]: [f64; 2], [factor, offset]: [f64; 2]| [factor * f, factor * o + offset];
+    let [factor, offset] = made.filter_map(|all| all.iter().find_map(line)).fold([1.0, 0.0], then);
+    let is_near = |a: f64, b: f64| (a - b).abs() <= 0.01 * b.abs();
+    // A hundredth of what it is off by.
+    line(told).is_some_and(|[f, o]| {
+        is_near(f - 1.0, factor - 1.0) && (is_near(o, offset) || (o - offset).abs() < 1e-9)
+    })
 }
 
 /// Whether what is told is the turn that several changes of axes come to.
