@@ -22,6 +22,11 @@ pub enum FileError {
     #[diagnostic(code(raypencil::mesh))]
     Mesh(Box<Problem>),
 
+    /// Wrong contents of a point cloud, PCD or PLY.
+    #[error("{0}")]
+    #[diagnostic(code(raypencil::cloud))]
+    Cloud(Box<Problem>),
+
     /// Wrong contents of an elevation model.
     #[error("{0}")]
     #[diagnostic(code(raypencil::dem))]

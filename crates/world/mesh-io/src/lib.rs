@@ -29,6 +29,7 @@
 //!       stl, obj, npy_pair                    a format each
 //!       ply: header -> numbers                elements and types, and the numbers of either kind
 //!       read                                  which format a file has, and triangles as `f64`
+//! cloud  columns, lzf -> pcd, read            fields of a point cloud; PCD, and PLY by the parts above
 //! file_frame, file_facts -> terrain           axes and units of a file, what it says of them, and terrain from any mesh
 //! ```
 //!
@@ -54,6 +55,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod cloud;
 pub mod dem;
 mod file_facts;
 mod file_frame;
@@ -61,6 +63,7 @@ pub mod gltf;
 mod terrain;
 pub mod triangles;
 
+pub use cloud::{Cloud, CloudColumn, CloudStorage, cloud_from_bytes, is_cloud_file, read_cloud};
 pub use dem::{
     AxisSystem, Dem, DemFacts, DemOptions, HeightUnit, LengthUnit, NoData, Registration, SpikeFacts, Spikes,
     UnitSource, dem_from_bytes, read_dem, read_dem_with, write_geotiff,

@@ -15,6 +15,7 @@ mod stl;
 mod text;
 
 pub(crate) use parts::MAX_COORDINATE;
+pub(crate) use ply::cloud as ply_cloud;
 pub use polygon_facts::{BentPolygons, CrossingPolygons, PolygonFacts, PolygonPlace};
 pub(crate) use read::{Format, format, parse, read_bytes};
 pub use read::{TriangleFile, load_triangles, read_triangles, triangles_from_bytes};

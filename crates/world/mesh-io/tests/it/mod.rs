@@ -1,5 +1,6 @@
 //! The tests of this crate by its public items, one program together with its unit tests.
 
+mod clouds;
 mod dem;
 // The file alone: as a dependency, `raypencil-tests` would build the whole workspace first.
 #[path = "../../../../../tests/src/glb.rs"]

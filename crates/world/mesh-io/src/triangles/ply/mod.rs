@@ -7,6 +7,7 @@ mod numbers;
 
 use raypencil_files::Fault;
 
+use crate::cloud::{CloudColumn, CloudStorage};
 use crate::triangles::parts::{Parts, coordinate};
 use header::{Element, Format, Header, Number, Property};
 use numbers::{Binary, Numbers, Text};
@@ -53,6 +54,69 @@ fn rows(header: &Header<'_>, mut numbers: impl Numbers) -> Result<Parts, Fault> 
     // "\n" may have become "\r\n" on its way.
     numbers.finish()?;
     Ok(parts)
+}
+
+/// Reads those properties of the vertices that `keeps` names, as the fields of a cloud. Whatever follows the vertices is left alone.
+pub(crate) fn cloud(file: &[u8], keeps: impl Fn(&str) -> bool) -> Result<Vec<CloudColumn>, Fault> {
+    let header = header::read(file)?;
+    match header.format {
+        Format::Text => columns(&header, Text::new(&file[header.bytes..], header.lines), keeps),
+        Format::LittleEndian => columns(&header, Binary::new(file, header.bytes, false), keeps),
+        Format::BigEndian => columns(&header, Binary::new(file, header.bytes, true), keeps),
+    }
+}
+
+fn columns(
+    header: &Header<'_>,
+    mut numbers: impl Numbers,
+    keeps: impl Fn(&str) -> bool,
+) -> Result<Vec<CloudColumn>, Fault> {
+    check_counts(header, &numbers)?;
+    let [vertices, ..] = header.elements.as_slice() else {
+        return Err(Fault::new("header", "no element", "an element `vertex` with x, y and z"));
+    };
+    if vertices.name != b"vertex" {
+        return Err(Fault::new("header", "another element first", "the element `vertex` with x, y and z"));
+    }
+    let kept = |property: &Property<'_>| {
+        let name = String::from_utf8_lossy(property.name).into_owned();
+        (property.length.is_none() && keeps(&name)).then_some(name)
+    };
+    let mut columns: Vec<Option<(CloudColumn, Vec<i32>)>> = Vec::new();
+    for property in &vertices.properties {
+        let storage = match property.number {
+            Number::Real(4) => CloudStorage::Single,
+            Number::Real(_) => CloudStorage::Double,
+            Number::Signed(_) | Number::Unsigned(_) => CloudStorage::Whole,
+        };
+        // The file has a byte or more for each number.
+        let values = |_: &String| Vec::with_capacity(vertices.count as usize);
+        let column = kept(property).map(|name| {
+            let values = values(&name);
+            (CloudColumn { name, storage, values }, Vec::new())
+        });
+        columns.push(column);
+    }
+    for _ in 0..vertices.count {
+        numbers.begin_row()?;
+        for (property, column) in vertices.properties.iter().zip(&mut columns) {
+            let Some((column, decimals)) = column else {
+                skip(property, &mut numbers)?;
+                continue;
+            };
+            column.values.push(numbers.real(property.number)?);
+            decimals.extend(numbers.decimals());
+        }
+        numbers.end_row()?;
+    }
+    let named = |(mut column, decimals): (CloudColumn, Vec<i32>)| {
+        if column.storage != CloudStorage::Whole && !decimals.is_empty() {
+            let of_single = column.storage == CloudStorage::Single;
+            column.storage = CloudStorage::Decimal { decimals, of_single };
+        }
+        column
+    };
+    Ok(columns.into_iter().flatten().map(named).collect())
 }
 
 /// Refuses rows that cannot be in the file, before memory is asked for.

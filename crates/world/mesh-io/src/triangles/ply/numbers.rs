@@ -2,6 +2,7 @@
 
 use raypencil_files::Fault;
 
+use crate::cloud::decimals;
 use crate::triangles::ply::header::{Element, Number};
 use crate::triangles::text::{self, Lines, quoted, words};
 
@@ -19,6 +20,11 @@ pub(super) trait Numbers {
 
     /// A number as the nearest double.
     fn real(&mut self, number: Number) -> Result<f64, Fault>;
+
+    /// Digits after the point of the last number, less its exponent; `None` in a binary file.
+    fn decimals(&self) -> Option<i32> {
+        None
+    }
 
     /// A whole number. The header has been checked to declare an integer.
     fn whole(&mut self, number: Number) -> Result<i64, Fault>;
@@ -139,16 +145,19 @@ pub(super) struct Text<'a> {
     lines: Lines<'a>,
     line: usize,
     rest: &'a [u8],
+    /// The last word.
+    last: &'a [u8],
 }
 
 impl<'a> Text<'a> {
     /// Numbers of a text that has so many lines of header before it.
     pub(super) fn new(text: &'a [u8], header_lines: usize) -> Self {
-        Self { lines: Lines::new(text, header_lines + 1), line: header_lines, rest: &[] }
+        Self { lines: Lines::new(text, header_lines + 1), line: header_lines, rest: &[], last: &[] }
     }
 
     fn word(&mut self) -> Option<&'a [u8]> {
         let word = words(self.rest).next()?;
+        self.last = word;
         self.rest = &self.rest.trim_ascii_start()[word.len()..];
         Some(word)
     }
@@ -185,6 +194,10 @@ impl Numbers for Text<'_> {
     fn real(&mut self, _: Number) -> Result<f64, Fault> {
         let word = self.word();
         text::number(word, || self.place())
+    }
+
+    fn decimals(&self) -> Option<i32> {
+        Some(decimals(std::str::from_utf8(self.last).unwrap_or_default()))
     }
 
     fn whole(&mut self, _: Number) -> Result<i64, Fault> {

@@ -1,0 +1,116 @@
+//! The numbers of a cloud, a column for each field.
+
+use raypencil_files::Fault;
+
+/// How the numbers of a field are stored.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CloudStorage {
+    /// Single precision.
+    Single,
+    /// Double precision.
+    Double,
+    /// Whole numbers.
+    Whole,
+    /// Decimal numbers: for each the number of its decimals, less its exponent; and whether the file declares single precision.
+    Decimal {
+        /// Digits after the point: 3 of 0.125, -2 of 1e2.
+        decimals: Vec<i32>,
+        /// Whether the numbers were of single precision before they were printed.
+        of_single: bool,
+    },
+}
+
+/// A field of a cloud: a number for each point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CloudColumn {
+    /// The name in the file.
+    pub name: String,
+    /// How its numbers are stored.
+    pub storage: CloudStorage,
+    /// The numbers, as doubles. Whole numbers beyond 2^53 are rounded.
+    pub values: Vec<f64>,
+}
+
+impl CloudColumn {
+    /// How far a number may be from the one that was stored, by its rounding to single precision or to decimals. That of a double is
+    /// 0: bounds of arithmetic have it already. 0 for a number that is not finite.
+    ///
+    /// ```
+    /// use raypencil_mesh_io::{CloudColumn, CloudStorage};
+    ///
+    /// let values = vec![1.0, 3.0];
+    /// let single = CloudColumn { name: "x".into(), storage: CloudStorage::Single, values: values.clone() };
+    /// // Half of 2^-23 and of 2^-22.
+    /// assert_eq!([0, 1].map(|index| single.error(index)), [1.0 / 16_777_216.0, 1.0 / 8_388_608.0]);
+    /// let storage = CloudStorage::Decimal { decimals: vec![0, 2], of_single: false };
+    /// let text = CloudColumn { storage, ..single };
+    /// assert_eq!([0, 1].map(|index| text.error(index)), [0.5, 0.005]);
+    /// ```
+    pub fn error(&self, index: usize) -> f64 {
+        let value = self.values[index];
+        if !value.is_finite() {
+            return 0.0;
+        }
+        // A number that rounds to this one lies within half the gap above it: the gap below is never larger.
+        let of_single = || {
+            let size = (value as f32).abs();
+            (f64::from(size.next_up()) - f64::from(size)) / 2.0
+        };
+        match &self.storage {
+            CloudStorage::Single => of_single(),
+            CloudStorage::Double | CloudStorage::Whole => 0.0,
+            CloudStorage::Decimal { decimals, of_single: is_single } => {
+                // Five units of the decimal behind the last one: the reader of decimal numbers rounds it rightly.
+                let of_text = format!("5e{}", -decimals[index] - 1).parse().unwrap_or(0.0);
+                of_text + if *is_single { of_single() } else { 0.0 }
+            }
+        }
+    }
+}
+
+/// A point cloud: fields by their names, a number for each point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cloud {
+    /// Points of a row; the number of all points if the cloud has no order.
+    pub width: u64,
+    /// Rows; 1 if the cloud has no order.
+    pub height: u64,
+    /// The fields. x, y and z are among them.
+    pub columns: Vec<CloudColumn>,
+}
+
+impl Cloud {
+    /// A field by its name.
+    pub fn column(&self, name: &str) -> Option<&CloudColumn> {
+        self.columns.iter().find(|column| column.name == name)
+    }
+
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.columns.first().map_or(0, |column| column.values.len())
+    }
+
+    /// Whether there is no point.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// Refuses a cloud without x, y and z, and one whose field of the name stands there twice.
+pub(super) fn check_names(names: &[String]) -> Result<(), Fault> {
+    for axis in ["x", "y", "z"] {
+        if !names.iter().any(|name| name == axis) {
+            return Err(Fault::new("fields", format!("no {axis}"), "x, y and z, each a single number"));
+        }
+    }
+    Ok(())
+}
+
+/// Digits after the point of a decimal number as it is printed, less its exponent.
+pub(crate) fn decimals(word: &str) -> i32 {
+    let (digits, exponent) = word.split_once(['e', 'E']).unwrap_or((word, "0"));
+    let after = digits.split_once('.').map_or(0, |(_, after)| after.len());
+    // What parses as a number has an exponent that is one; 400 decimals are beyond every double.
+    let exponent = exponent.parse::<i32>().unwrap_or(0).clamp(-400, 400);
+    i32::try_from(after).unwrap_or(400).min(400) - exponent
+}

@@ -1,0 +1,12 @@
+//! Point clouds as other programs write them: PCD and PLY.
+//!
+//! CHOICE: PCD has a small parser of its own. `pcd-rs` knows no compressed files, and its errors name no place.
+
+mod columns;
+mod lzf;
+mod pcd;
+mod read;
+
+pub(crate) use columns::decimals;
+pub use columns::{Cloud, CloudColumn, CloudStorage};
+pub use read::{cloud_from_bytes, is_cloud_file, read_cloud};

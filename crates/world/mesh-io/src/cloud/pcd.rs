@@ -1,0 +1,353 @@
+//! PCD 0.5 to 0.7: text, binary and compressed. (Point Cloud Library, "The PCD (Point Cloud Data) file format")
+
+use raypencil_files::Fault;
+
+use super::columns::{Cloud, CloudColumn, CloudStorage, check_names, decimals};
+use super::lzf;
+
+/// Maximum number of fields.
+const MAX_FIELDS: usize = 1024;
+
+/// Maximum bytes of the header.
+const MAX_HEADER_BYTES: usize = 1 << 20;
+
+/// A field, as the header declares it.
+struct Field {
+    name: String,
+    /// Bytes of a number: 1, 2, 4 or 8.
+    size: usize,
+    /// I, U or F.
+    kind: u8,
+    /// Numbers of a point; only fields of one are kept.
+    count: usize,
+}
+
+impl Field {
+    fn bytes(&self) -> usize {
+        self.size * self.count
+    }
+
+    /// Whether it is a field that somebody may ask for. `_` is padding.
+    fn is_kept(&self) -> bool {
+        self.count == 1 && self.name != "_"
+    }
+
+    fn storage(&self) -> CloudStorage {
+        match (self.kind, self.size) {
+            (b'F', 4) => CloudStorage::Single,
+            (b'F', _) => CloudStorage::Double,
+            _ => CloudStorage::Whole,
+        }
+    }
+
+    /// The number of these bytes, little endian.
+    fn number(&self, bytes: &[u8]) -> f64 {
+        let mut word = [0; 8];
+        word[..self.size].copy_from_slice(bytes);
+        let bits = u64::from_le_bytes(word);
+        match (self.kind, self.size) {
+            (b'F', 4) => f64::from(f32::from_bits(bits as u32)),
+            (b'F', _) => f64::from_bits(bits),
+            (b'U', _) => bits as f64,
+            _ => {
+                // Sign extension: the sign bit is moved to the top and back.
+                let shift = 64 - 8 * self.size;
+                ((bits << shift) as i64 >> shift) as f64
+            }
+        }
+    }
+}
+
+/// What the lines before the numbers say.
+struct Header {
+    fields: Vec<Field>,
+    width: u64,
+    height: u64,
+    points: u64,
+    data: String,
+    /// Where the numbers begin, bytes, and the number of the line.
+    start: usize,
+    line: usize,
+}
+
+fn header(file: &[u8]) -> Result<Header, Fault> {
+    let (mut names, mut sizes, mut kinds, mut counts) = (None, None, None, None);
+    let (mut width, mut height, mut points) = (None, None, None);
+    let (mut start, mut line) = (0, 0);
+    loop {
+        line += 1;
+        let place = format!("line {line}");
+        let rest = &file[start..file.len().min(MAX_HEADER_BYTES)];
+        let Some(length) = rest.iter().position(|&byte| byte == b'\n') else {
+            return Err(Fault::new(place, "the end of the header", "a line `DATA` (is this a PCD file?)"));
+        };
+        let text = String::from_utf8_lossy(&rest[..length]).into_owned();
+        start += length + 1;
+        let mut words = text.split_ascii_whitespace().map(str::to_string);
+        let Some(key) = words.next() else { continue };
+        let values: Vec<String> = words.collect();
+        let whole = || match values.as_slice() {
+            [value] => value.parse::<u64>().ok(),
+            _ => None,
+        };
+        let one = |expected: &str| {
+            whole()
+                .ok_or_else(|| Fault::new(place.clone(), values.join(" "), format!("{key} and {expected}")))
+        };
+        match key.as_str() {
+            key if key.starts_with('#') => {}
+            "VERSION" | "VIEWPOINT" => {}
+            "FIELDS" | "COLUMNS" => names = Some(values),
+            "SIZE" => sizes = Some(values),
+            "TYPE" => kinds = Some(values),
+            "COUNT" => counts = Some(values),
+            "WIDTH" => width = Some(one("a number of points")?),
+            "HEIGHT" => height = Some(one("a number of rows")?),
+            "POINTS" => points = Some(one("a number of points")?),
+            "DATA" => {
+                let known = ["ascii", "binary", "binary_compressed"];
+                let data = match values.as_slice() {
+                    [data] if known.contains(&data.as_str()) => data.clone(),
+                    _ => {
+                        return Err(Fault::new(
+                            place,
+                            values.join(" "),
+                            "DATA and ascii, binary or binary_compressed",
+                        ));
+                    }
+                };
+                let missing =
+                    |what: &str| Fault::new("header", format!("no {what}"), format!("a line `{what}`"));
+                let names: Vec<String> = names.ok_or_else(|| missing("FIELDS"))?;
+                let width = width.ok_or_else(|| missing("WIDTH"))?;
+                let height = height.unwrap_or(1);
+                let product = width.checked_mul(height);
+                let points = points.or(product).ok_or_else(|| missing("POINTS"))?;
+                if product != Some(points) {
+                    let found = format!("{points} POINTS, {width} WIDTH, {height} HEIGHT");
+                    return Err(Fault::new("header", found, "WIDTH times HEIGHT points"));
+                }
+                let fields = fields(names, sizes, kinds, counts)?;
+                return Ok(Header { fields, width, height, points, data, start, line });
+            }
+            _ => {
+                let expected = "VERSION, FIELDS, SIZE, TYPE, COUNT, WIDTH, HEIGHT, VIEWPOINT, POINTS or DATA";
+                return Err(Fault::new(place, key, expected));
+            }
+        }
+    }
+}
+
+fn fields(
+    names: Vec<String>,
+    sizes: Option<Vec<String>>,
+    kinds: Option<Vec<String>>,
+    counts: Option<Vec<String>>,
+) -> Result<Vec<Field>, Fault> {
+    if names.len() > MAX_FIELDS {
+        return Err(Fault::new("FIELDS", format!("{} names", names.len()), format!("at most {MAX_FIELDS}")));
+    }
+    check_names(&names)?;
+    let ones = || names.iter().map(|_| "1".to_string()).collect::<Vec<_>>();
+    let lists = [("SIZE", sizes), ("TYPE", kinds), ("COUNT", counts.or_else(|| Some(ones())))];
+    let [sizes, kinds, counts] = lists.map(|(key, list)| {
+        let list = list.unwrap_or_default();
+        if list.len() == names.len() {
+            return Ok(list);
+        }
+        Err(Fault::new(key, format!("{} words", list.len()), format!("{}, one for each field", names.len())))
+    });
+    let (sizes, kinds, counts) = (sizes?, kinds?, counts?);
+    let mut fields: Vec<Field> = Vec::new();
+    for (index, name) in names.into_iter().enumerate() {
+        let size = sizes[index].parse().ok().filter(|size| [1, 2, 4, 8].contains(size));
+        let kind = match kinds[index].as_str() {
+            "I" => Some(b'I'),
+            "U" => Some(b'U'),
+            "F" => Some(b'F'),
+            _ => None,
+        };
+        let is_type = |size: usize, kind: u8| kind != b'F' || size >= 4;
+        let (Some(size), Some(kind)) =
+            (size, kind.filter(|kind| size.is_some_and(|size| is_type(size, *kind))))
+        else {
+            let found = format!("SIZE {}, TYPE {}", sizes[index], kinds[index]);
+            let expected = "SIZE 1, 2, 4 or 8 and TYPE I, U or F, which has 4 or 8";
+            return Err(Fault::new(format!("field `{name}`"), found, expected));
+        };
+        let Some(count) = counts[index].parse().ok().filter(|count| (1..=1 << 16).contains(count)) else {
+            return Err(Fault::new(
+                format!("field `{name}`"),
+                format!("COUNT {}", counts[index]),
+                "1 to 65536",
+            ));
+        };
+        if name != "_" && fields.iter().any(|other| other.name == name) {
+            return Err(Fault::new(format!("field `{name}`"), "a second one", "each field once"));
+        }
+        fields.push(Field { name, size, kind, count });
+    }
+    match fields.iter().find(|field| ["x", "y", "z"].contains(&field.name.as_str()) && field.count != 1) {
+        Some(field) => Err(Fault::new(
+            format!("field `{}`", field.name),
+            format!("COUNT {}", field.count),
+            "a single number",
+        )),
+        None => Ok(fields),
+    }
+}
+
+pub(super) fn read(file: &[u8], keeps: impl Fn(&str) -> bool) -> Result<Cloud, Fault> {
+    let header = header(file)?;
+    let body = &file[header.start..];
+    let keeps = |field: &Field| field.is_kept() && keeps(&field.name);
+    let columns = match header.data.as_str() {
+        "ascii" => of_text(&header, body, keeps)?,
+        "binary" => {
+            let stride: usize = header.fields.iter().map(Field::bytes).sum();
+            let bytes = of_size(&header, body, stride as u64)?;
+            let mut offset = 0;
+            let mut columns = Vec::new();
+            for field in &header.fields {
+                if keeps(field) {
+                    let number = |point: &[u8]| field.number(&point[offset..offset + field.size]);
+                    columns.push(CloudColumn {
+                        name: field.name.clone(),
+                        storage: field.storage(),
+                        values: bytes.chunks_exact(stride).map(number).collect(),
+                    });
+                }
+                offset += field.bytes();
+            }
+            columns
+        }
+        _ => {
+            let stride: usize = header.fields.iter().map(Field::bytes).sum();
+            let word = |at: usize| -> Option<u64> {
+                Some(u64::from(u32::from_le_bytes(body.get(at..at + 4)?.try_into().ok()?)))
+            };
+            let (Some(packed), Some(length)) = (word(0), word(4)) else {
+                return Err(Fault::new(
+                    "data",
+                    format!("{} bytes", body.len()),
+                    "two sizes of 4 bytes, then as many",
+                ));
+            };
+            let claimed = header.points.checked_mul(stride as u64);
+            if claimed != Some(length) {
+                let found = format!("{length} bytes, uncompressed");
+                return Err(Fault::new(
+                    "data",
+                    found,
+                    format!("{stride} for each of {} points", header.points),
+                ));
+            }
+            let Some(packed) = usize::try_from(packed).ok().and_then(|packed| body.get(8..8 + packed)) else {
+                let found = format!("{} bytes after the sizes", body.len() - 8);
+                return Err(Fault::new(
+                    "data",
+                    found,
+                    format!("{packed} compressed bytes (is the file cut off?)"),
+                ));
+            };
+            let bytes = lzf::inflated(packed, length)?;
+            // Field by field, all points of each.
+            let mut start = 0;
+            let mut columns = Vec::new();
+            for field in &header.fields {
+                let end = start + field.bytes() * header.points as usize;
+                if keeps(field) {
+                    columns.push(CloudColumn {
+                        name: field.name.clone(),
+                        storage: field.storage(),
+                        values: bytes[start..end]
+                            .chunks_exact(field.size)
+                            .map(|bytes| field.number(bytes))
+                            .collect(),
+                    });
+                }
+                start = end;
+            }
+            columns
+        }
+    };
+    Ok(Cloud { width: header.width, height: header.height, columns })
+}
+
+/// The bytes of all points, after it is known that they are there.
+fn of_size<'a>(header: &Header, body: &'a [u8], stride: u64) -> Result<&'a [u8], Fault> {
+    let claimed = header.points.checked_mul(stride);
+    match claimed.and_then(|claimed| usize::try_from(claimed).ok()).and_then(|claimed| body.get(..claimed)) {
+        Some(bytes) => Ok(bytes),
+        None => {
+            let found = format!("{} bytes", body.len());
+            let expected = format!("{stride} for each of {} points (is the file cut off?)", header.points);
+            Err(Fault::new("data", found, expected))
+        }
+    }
+}
+
+fn of_text(header: &Header, body: &[u8], keeps: impl Fn(&Field) -> bool) -> Result<Vec<CloudColumn>, Fault> {
+    let width: usize = header.fields.iter().map(|field| field.count).sum();
+    // A digit and a blank, or the end of the line, for each number.
+    let least = (2 * width as u64).checked_mul(header.points);
+    if least.is_none_or(|least| least > body.len() as u64 + 1) {
+        let found = format!("{} bytes", body.len());
+        return Err(Fault::new(
+            "data",
+            found,
+            format!("{width} numbers for each of {} points", header.points),
+        ));
+    }
+    let mut columns: Vec<(CloudColumn, Vec<i32>)> = Vec::new();
+    for field in header.fields.iter().filter(|field| keeps(field)) {
+        let values = Vec::with_capacity(header.points as usize);
+        columns
+            .push((CloudColumn { name: field.name.clone(), storage: field.storage(), values }, Vec::new()));
+    }
+    let mut rows = 0;
+    for (index, text) in body.split(|&byte| byte == b'\n').enumerate() {
+        let text = String::from_utf8_lossy(text);
+        let words: Vec<&str> = text.split_ascii_whitespace().collect();
+        if words.is_empty() {
+            continue;
+        }
+        let place = || format!("line {}", header.line + 1 + index);
+        if rows == header.points {
+            return Err(Fault::new(place(), "a line after the last point", format!("{rows} points")));
+        }
+        if words.len() != width {
+            return Err(Fault::new(place(), format!("{} numbers", words.len()), format!("{width} numbers")));
+        }
+        let (mut at, mut kept) = (0, columns.iter_mut());
+        for field in &header.fields {
+            if keeps(field)
+                && let Some((column, of_text)) = kept.next()
+            {
+                let number = words[at].parse::<f64>();
+                let Ok(number) = number else {
+                    return Err(Fault::new(place(), format!("{:?}", words[at]), "a decimal number, or nan"));
+                };
+                column.values.push(number);
+                of_text.push(decimals(words[at]));
+            }
+            at += field.count;
+        }
+        rows += 1;
+    }
+    if rows != header.points {
+        return Err(Fault::new(
+            "data",
+            format!("{rows} lines"),
+            format!("{}, one for each point", header.points),
+        ));
+    }
+    let named = |(mut column, decimals): (CloudColumn, Vec<i32>)| {
+        column.storage = match column.storage {
+            CloudStorage::Whole => CloudStorage::Whole,
+            storage => CloudStorage::Decimal { decimals, of_single: storage == CloudStorage::Single },
+        };
+        column
+    };
+    Ok(columns.into_iter().map(named).collect())
+}

@@ -1,0 +1,138 @@
+//! Point clouds of other programs: what is read, and what is refused with which words.
+
+use raypencil_mesh_io::{Cloud, CloudStorage, cloud_from_bytes};
+
+fn read(bytes: &[u8]) -> Result<Cloud, String> {
+    cloud_from_bytes(bytes, "c".as_ref(), |name| name != "unasked").map_err(|error| error.to_string())
+}
+
+fn header(data: &str) -> String {
+    format!(
+        "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z _ ring time normal unasked\nSIZE 4 4 8 1 2 4 4 1\nTYPE F F F U U I F U\n\
+         COUNT 1 1 1 3 1 1 2 1\nWIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA {data}\n"
+    )
+}
+
+/// The points of that header, field by field.
+fn fields() -> Vec<[Vec<u8>; 2]> {
+    let single = |a: f32, b: f32| [a.to_le_bytes().to_vec(), b.to_le_bytes().to_vec()];
+    vec![
+        single(1.5, f32::NAN),
+        single(-2.0, 4.0),
+        [0.1_f64.to_le_bytes().to_vec(), 3.0_f64.to_le_bytes().to_vec()],
+        [vec![7; 3], vec![7; 3]],
+        [500_u16.to_le_bytes().to_vec(), 65_535_u16.to_le_bytes().to_vec()],
+        [(-5_i32).to_le_bytes().to_vec(), 6_i32.to_le_bytes().to_vec()],
+        [vec![0; 8], vec![0; 8]],
+        [vec![1], vec![2]],
+    ]
+}
+
+#[track_caller]
+fn expect(cloud: &Cloud) {
+    let names: Vec<&str> = cloud.columns.iter().map(|column| column.name.as_str()).collect();
+    assert_eq!(names, ["x", "y", "z", "ring", "time"]);
+    let of = |name: &str| cloud.column(name).expect("a field").values.clone();
+    assert!(of("x")[0] == 1.5 && of("x")[1].is_nan());
+    assert_eq!((of("y"), of("z")), (vec![-2.0, 4.0], vec![0.1, 3.0]));
+    assert_eq!((of("ring"), of("time")), (vec![500.0, 65_535.0], vec![-5.0, 6.0]));
+    assert_eq!((cloud.width, cloud.height, cloud.len(), cloud.is_empty()), (2, 1, 2, false));
+}
+
+#[test]
+fn the_three_kinds_of_pcd_are_the_same_cloud() {
+    let mut binary = header("binary").into_bytes();
+    for point in [0, 1] {
+        fields().iter().for_each(|field| binary.extend(&field[point]));
+    }
+    let cloud = read(&binary).expect("a cloud");
+    expect(&cloud);
+    assert_eq!(cloud.columns[0].storage, CloudStorage::Single);
+    assert_eq!(cloud.columns[2].storage, CloudStorage::Double);
+    assert_eq!(cloud.columns[3].storage, CloudStorage::Whole);
+    // Field by field; LZF of at most 32 bytes as they are at a time.
+    let plain: Vec<u8> = fields().iter().flatten().flatten().copied().collect();
+    let packed: Vec<u8> =
+        plain.chunks(32).flat_map(|part| [&[part.len() as u8 - 1], part].concat()).collect();
+    let mut compressed = header("binary_compressed").into_bytes();
+    compressed.extend((packed.len() as u32).to_le_bytes());
+    compressed.extend((plain.len() as u32).to_le_bytes());
+    compressed.extend(&packed);
+    expect(&read(&compressed).expect("a cloud"));
+    let text = header("ascii") + "1.5 -2 0.1 7 7 7 500 -5 0 0 1\nnan 4.00 3e0 7 7 7 65535 6 0 0 2\n";
+    let cloud = read(text.as_bytes()).expect("a cloud");
+    expect(&cloud);
+    // Two decimals, after single precision: half a hundredth and half a unit at 4.
+    assert_eq!(cloud.columns[1].error(1), 0.005 + 1.0 / 4_194_304.0);
+    // Whatever is cut off is no cloud.
+    for file in [&binary, &compressed] {
+        for end in [file.len() - 1, file.len() - plain.len()] {
+            assert!(read(&file[..end]).unwrap_err().contains("cut off"), "{end}");
+        }
+    }
+    let end = text.len() - 3;
+    assert!(read(&text.as_bytes()[..end]).unwrap_err().contains("10 numbers; expected 11 numbers"));
+}
+
+#[test]
+fn vertices_of_ply_are_a_cloud() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty double y\nproperty float z\n\
+                property uchar ring\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
+                1.25 2.5 nan 3\n0 0 -1 4\n3 0 0 0\n";
+    let cloud = read(text.as_bytes()).expect("a cloud");
+    assert_eq!(cloud.column("ring").expect("a field").values, [3.0, 4.0]);
+    assert_eq!(cloud.column("y").expect("a field").error(0), 0.05);
+    assert!(cloud.column("z").expect("a field").values[0].is_nan());
+    let mut binary =
+        b"ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+            .to_vec();
+    [1.0_f32, 2.0, 3.0].iter().for_each(|part| binary.extend(part.to_be_bytes()));
+    let cloud = read(&binary).expect("a cloud");
+    assert_eq!(cloud.columns[2].values, [3.0]);
+    assert_eq!(cloud.columns[2].storage, CloudStorage::Single);
+}
+
+#[test]
+fn what_is_no_cloud_is_refused_in_one_sentence() {
+    let good =
+        "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii\n1 2 3\n";
+    assert!(read(good.as_bytes()).is_ok());
+    let cases = [
+        ("FIELDS x y z", "FIELDS x y", "fields: no z; expected x, y and z"),
+        ("FIELDS x y z", "FIELDS x y z y", "SIZE: 3 words; expected 4"),
+        ("SIZE 4 4 4", "SIZE 4 3 4", "field `y`: SIZE 3, TYPE F; expected SIZE 1, 2, 4 or 8"),
+        ("SIZE 4 4 4", "SIZE 4 2 4", "TYPE I, U or F, which has 4 or 8"),
+        ("TYPE F F F", "TYPE F Q F", "field `y`: SIZE 4, TYPE Q"),
+        ("TYPE F F F\n", "TYPE F F F\nCOUNT 1 2 1\n", "field `y`: COUNT 2; expected a single number"),
+        ("TYPE F F F\n", "TYPE F F F\nCOUNT 1 0 1\n", "field `y`: COUNT 0; expected 1 to 65536"),
+        ("WIDTH 1", "WIDTH 2", "1 POINTS, 2 WIDTH, 1 HEIGHT; expected WIDTH times HEIGHT"),
+        ("WIDTH 1", "WIDTH one", "line 5: one; expected WIDTH and a number"),
+        (
+            "WIDTH 1\nHEIGHT 1\nPOINTS 1",
+            "WIDTH 99999999999\nPOINTS 99999999999",
+            "3 numbers for each of 99999999999 points",
+        ),
+        ("WIDTH 1\nHEIGHT 1\nPOINTS 1", "WIDTH 9999999999999999999\nHEIGHT 9999999999", "header: no POINTS"),
+        ("DATA ascii", "DATA octal", "line 8: octal; expected DATA and ascii"),
+        ("DATA ascii", "DATA binary", "data: 6 bytes; expected 12 for each of 1 points"),
+        ("DATA ascii", "DATA binary_compressed", "data: 6 bytes; expected two sizes of 4 bytes"),
+        ("DATA ascii\n1 2 3\n", "", "line 8: the end of the header"),
+        ("1 2 3", "1 2 x", "line 9: \"x\"; expected a decimal number, or nan"),
+        ("1 2 3", "1 2 3\n4 5 6", "line 10: a line after the last point"),
+        ("VERSION .7", "VERTEX", "file: neither `ply` nor the header of a PCD file"),
+        ("HEIGHT 1", "DEPTH 1", "line 6: DEPTH; expected VERSION, FIELDS"),
+    ];
+    for (from, to, words) in cases {
+        let message = read(good.replace(from, to).as_bytes()).expect_err(to);
+        assert!(message.starts_with("c: ") && message.contains(words), "{to:?}: {message}");
+    }
+    let ply =
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n1 2\n";
+    assert!(read(ply.as_bytes()).unwrap_err().contains("no z"));
+    let ply = ply.replace("vertex", "face");
+    assert!(read(ply.as_bytes()).unwrap_err().contains("another element first"));
+    // Sizes that no file of this length has.
+    let mut huge = good.replace("DATA ascii\n1 2 3\n", "DATA binary_compressed\n").into_bytes();
+    huge.extend([[9, 0, 0, 0], [12, 0, 0, 0]].concat());
+    assert!(read(&huge).unwrap_err().contains("9 compressed bytes (is the file cut off?)"));
+}
