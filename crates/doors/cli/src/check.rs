@@ -1,7 +1,7 @@
 //! `raypencil check`: another program's answers against a reference pack.
 
 use raypencil::harness::{check_any_pack, pack_form};
-use raypencil::io::OutputFolder;
+use raypencil::io::{OutputFolder, is_cloud_file};
 use raypencil::pack::{Declarations, PackForm, Verification};
 
 use crate::args::Check;
@@ -33,7 +33,8 @@ fn checked(command: &Check, json: bool) -> Result<Outcome, Trouble> {
     if pack_form(&command.pack) == PackForm::Sensors {
         memory::ask_check(&command.pack)?;
     }
-    let checked = check_any_pack(&command.pack, &command.candidate, &declarations, share, &spinner)?;
+    let declared = (&declarations, command.frame.unwrap_or_default());
+    let checked = check_any_pack(&command.pack, &command.candidate, declared, share, &spinner)?;
     if let Some(folder) = &command.output {
         checked.write(folder)?;
     }
@@ -56,6 +57,12 @@ fn refuse_declared(command: &Check) -> Result<(), Trouble> {
         PackForm::Triangles if of_sensors => usage(format!(
             "--channel, --scale: {pack} is an input pack, which asks for triangles.npy; expected neither"
         )),
+        form if command.frame.is_some() && (form != PackForm::Rays || !is_cloud_file(&command.candidate)) => {
+            usage(format!(
+                "--frame: {} on {pack} is no point cloud (.pcd, .ply) on a pack of rays; expected no --frame",
+                command.candidate.display()
+            ))
+        }
         PackForm::Rays if of_sensors => usage(format!(
             "--channel, --scale: {pack} is a pack of rays, whose answers are NPY files of fixed names; expected neither"
         )),

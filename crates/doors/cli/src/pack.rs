@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use raypencil::cast::{CastSource, RayArray, RayPackCounts, read_rays, write_ray_pack};
+use raypencil::cast::{CastSource, RayArray, RayPackCounts, read_rays, write_ray_pack, write_scan_pack};
 use raypencil::harness::{PackedRaySet, write_pack_with_ray_sets};
 use raypencil::io::{
     FileError, FileFacts, FileFrame, FileUnits, LoadedRaySets, OutputFolder, file_sha256_hex, file_warnings,
@@ -89,22 +89,42 @@ fn packed_into(command: &Pack, json: bool) -> Result<Outcome, Trouble> {
 struct Packed {
     /// Name of their set; `None`: they are of no set, or of the only one.
     name: Option<String>,
-    array: RayArray,
+    rays: PackedRays,
     sides: Sides,
+}
+
+/// What is known of rays.
+enum PackedRays {
+    /// The rays alone.
+    Array(RayArray),
+    /// Those of a pattern, with its times and poses.
+    Set(Box<NamedRaySet>),
+}
+
+impl PackedRays {
+    fn len(&self) -> usize {
+        match self {
+            Self::Array(array) => array.rays.len(),
+            Self::Set(set) => set.set.rays().len(),
+        }
+    }
 }
 
 /// The rays of a file, and its digest: those of each set of a `.toml`, else an array.
 fn packed(rays: &Path) -> Result<(Vec<Packed>, String), Trouble> {
     if !rays.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
         let (_, digest) = file_sha256_hex(rays).map_err(|error| FileError::io(rays, "read", error))?;
-        return Ok((vec![Packed { name: None, array: read_rays(rays)?, sides: Sides::Both }], digest));
+        return Ok((
+            vec![Packed { name: None, rays: PackedRays::Array(read_rays(rays)?), sides: Sides::Both }],
+            digest,
+        ));
     }
     let LoadedRaySets { sets, sha256 } = read_ray_sets(rays)?;
     let is_one = sets.len() == 1;
     let of_set = |set: NamedRaySet| Packed {
         name: (!is_one).then(|| set.name.clone()),
-        array: RayArray { shape: set.shape.clone(), rays: set.set.rays().to_vec() },
         sides: set.set.sides(),
+        rays: PackedRays::Set(Box::new(set)),
     };
     Ok((sets.into_iter().map(of_set).collect(), sha256))
 }
@@ -131,13 +151,19 @@ fn pack_rays(command: &Pack, rays: &Path, json: bool) -> Result<Outcome, Trouble
         ask_pack(&folder, PackOf::Mesh(file))?;
     }
     // One after the other.
-    let most = packed.iter().map(|one| one.array.rays.len()).max().unwrap_or(0);
+    let most = packed.iter().map(|one| one.rays.len()).max().unwrap_or(0);
     memory::ask_cast(most, mesh.triangles.faces().len())?;
     let mut packs = Vec::new();
-    for Packed { name, array, sides } in packed {
+    for Packed { name, rays, sides } in packed {
         let folder = name.map_or(command.output.clone(), |name| command.output.join(name));
         let sides = if command.fronts_only { Sides::Fronts } else { sides };
-        let counts = write_ray_pack(&folder, (&mesh.triangles, &array, sides), &source, &spinner)?;
+        let triangles = &mesh.triangles;
+        let counts = match &rays {
+            PackedRays::Array(array) => {
+                write_ray_pack(&folder, (triangles, array, sides), &source, &spinner)?
+            }
+            PackedRays::Set(set) => write_scan_pack(&folder, (triangles, set, sides), &source, &spinner)?,
+        };
         packs.push((folder, counts));
     }
     drop(spinner);

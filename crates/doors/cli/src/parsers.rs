@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use raypencil::campaign::{MAX_SHARDS, PartName, Shard};
-use raypencil::cast::rays_from_bytes;
+use raypencil::cast::{CloudFrame, rays_from_bytes};
 use raypencil::drive::RecordContents;
 use raypencil::harness::MapFormat;
 use raypencil::io::{DeclaredChannel, HeightUnit, LengthUnit, NoData, SceneIoError, Setting, UpAxis};
@@ -51,6 +51,15 @@ pub(crate) fn up_axis() -> impl TypedValueParser<Value = UpAxis> {
     one_of([
         (UpAxis::Y.word(), "(x, y, z) of the file is (x, -z, y) of the terrain", UpAxis::Y),
         (UpAxis::Z.word(), "The axes of the file are those of the terrain", UpAxis::Z),
+    ])
+}
+
+/// `--frame`.
+pub(crate) fn cloud_frame() -> impl TypedValueParser<Value = CloudFrame> {
+    one_of([
+        (CloudFrame::Mesh.option(), "That of the mesh", CloudFrame::Mesh),
+        (CloudFrame::Sensor.option(), "The sensor's own at the time of each ray", CloudFrame::Sensor),
+        (CloudFrame::SensorAtStart.option(), "The sensor's own at its first pose", CloudFrame::SensorAtStart),
     ])
 }
 

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use raypencil::cast::CloudFrame;
 use raypencil::harness::{CheckedPack, check_any_pack, pack_form};
+use raypencil::io::is_cloud_file;
 use raypencil::pack::{CheckError, Declarations, PackForm, Verification};
 
 use crate::array::Arrays;
@@ -18,6 +20,8 @@ struct Question {
     pack: PathBuf,
     candidate: PathBuf,
     declared: Declarations,
+    /// The frame of a point cloud.
+    frame: Option<CloudFrame>,
     share: Verification,
     output: Option<PathBuf>,
 }
@@ -36,9 +40,16 @@ struct Answer {
 
 /// Refuses what a pack of this form has no use for.
 fn refuse_declared(question: &Question) -> Result<(), Failure> {
-    let Question { pack, declared, .. } = question;
+    let Question { pack, declared, candidate, frame, .. } = question;
+    let form = pack_form(pack);
     let pack = pack.display();
-    match pack_form(&question.pack) {
+    if frame.is_some() && (form != PackForm::Rays || !is_cloud_file(candidate)) {
+        return Err(Failure::new(format!(
+            "frame: {} on {pack} is no point cloud (.pcd, .ply) on a pack of rays; expected no frame",
+            candidate.display()
+        )));
+    }
+    match form {
         PackForm::Triangles if *declared != Declarations::default() => Err(Failure::new(format!(
             "{pack} is an input pack: arithmetic, miss, no_faces, channels and scale declare how rays are answered; expected none \
              of them"
@@ -54,9 +65,10 @@ fn refuse_declared(question: &Question) -> Result<(), Failure> {
 
 fn answer(question: &Question, watch: &Watch) -> Result<Answer, Failure> {
     refuse_declared(question)?;
-    let Question { pack, candidate, declared, share, output } = question;
+    let Question { pack, candidate, declared, frame, share, output } = question;
     let helped = |error: CheckError| Failure::with_help(&error, error.help());
-    let checked = check_any_pack(pack, candidate, declared, *share, watch).map_err(helped)?;
+    let checked = check_any_pack(pack, candidate, (declared, frame.unwrap_or_default()), *share, watch)
+        .map_err(helped)?;
     if let Some(folder) = output {
         checked.write(folder)?;
     }
@@ -80,8 +92,8 @@ fn answer(question: &Question, watch: &Watch) -> Result<Answer, Failure> {
 /// Checks a folder of answers against a pack of any kind.
 #[pyfunction]
 #[pyo3(signature = (
-    pack, candidate, channels, scale, arithmetic=None, miss=None, no_faces=false, verify=false, output=None,
-    on_stage=None
+    pack, candidate, channels, scale, arithmetic=None, miss=None, no_faces=false, frame=None, verify=false,
+    output=None, on_stage=None
 ))]
 #[allow(clippy::too_many_arguments, reason = "the arguments of a Python function by their names")]
 pub(crate) fn check<'py>(
@@ -93,6 +105,7 @@ pub(crate) fn check<'py>(
     arithmetic: Option<String>,
     miss: Option<f64>,
     no_faces: bool,
+    frame: Option<String>,
     verify: bool,
     output: Option<PathBuf>,
     on_stage: Option<&Bound<'py, PyAny>>,
@@ -106,9 +119,14 @@ pub(crate) fn check<'py>(
             )));
         }
         let share = if verify { Verification::All } else { Verification::Drawn { seed: None } };
+        let of_word = |word: String| {
+            let found = CloudFrame::ALL.into_iter().find(|frame| frame.option() == word);
+            found.ok_or_else(|| Failure::new(format!("frame is {word:?}; expected mesh, sensor or start")))
+        };
+        let frame = frame.map(of_word).transpose()?;
         let named = declared(&channels, scale)?;
         let declared = Declarations { precision, miss, ignores_faces: no_faces, ..named };
-        let question = Question { pack, candidate, declared, share, output };
+        let question = Question { pack, candidate, declared, frame, share, output };
         answer(&question, watch)
     })?;
     let dict = PyDict::new(py);

@@ -68,6 +68,8 @@ fn compared(
             normal: some(&stated.normal, from, to),
             barycentric: some(&stated.barycentric, from, to),
             cos_incidence: some(&stated.cos_incidence, from, to),
+            point_error: some(&stated.point_error, from, to),
+            range_error: some(&stated.range_error, from, to),
         }
     };
     let mut whole: Option<Comparison> = None;
@@ -154,6 +156,7 @@ pub(crate) fn judge<'py>(
         normal: vectors(normal),
         barycentric: vectors(barycentric),
         cos_incidence: numbers(cos_incidence),
+        ..Stated::default()
     };
     let mesh = mesh.clone();
     let (comparison, text, json) = watched(py, on_stage, move |watch| {

@@ -38,9 +38,10 @@ pub fn write_ply(path: impl AsRef<Path>, answers: &Answers) -> Result<(), FileEr
 }
 
 /// The frame in which the points of a PCD file stand.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum CloudFrame {
     /// That of the mesh.
+    #[default]
     Mesh,
     /// The sensor's own at the time at which each ray is fired: as its driver gives them, distorted by the sensor's motion.
     Sensor,
@@ -67,8 +68,20 @@ impl CloudFrame {
         }
     }
 
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Mesh, Self::Sensor, Self::SensorAtStart];
+
+    /// The word of options.
+    pub fn option(self) -> &'static str {
+        match self {
+            Self::Mesh => "mesh",
+            Self::Sensor => "sensor",
+            Self::SensorAtStart => "start",
+        }
+    }
+
     /// The frame in words.
-    fn words(self) -> &'static str {
+    pub(crate) fn words(self) -> &'static str {
         match self {
             Self::Mesh => "the mesh",
             Self::Sensor => "the sensor, at the time of each ray",
@@ -167,12 +180,15 @@ pub fn write_pcd(
     })
 }
 
-/// The rank of each channel by its elevation, from below; of equal ones the first is lower.
 fn rings(set: &NamedRaySet) -> Option<Vec<u64>> {
-    let elevations = set.elevations_deg.as_ref()?;
+    Some(ranks(set.elevations_deg.as_ref()?))
+}
+
+/// The rank of each channel by its elevation, from below; of equal ones the first is lower.
+pub(crate) fn ranks(elevations: &[f64]) -> Vec<u64> {
     let mut order: Vec<usize> = (0..elevations.len()).collect();
     order.sort_by(|a, b| elevations[*a].total_cmp(&elevations[*b]));
     let mut rings = vec![0; order.len()];
     (0..).zip(order).for_each(|(rank, channel)| rings[channel] = rank);
-    Some(rings)
+    rings
 }

@@ -56,8 +56,8 @@ pub use comparison::{
     comparison_headline, comparison_json, comparison_text, write_comparison,
 };
 pub use pack::{
-    CandidateConventions, RayPackChecked, RayPackCounts, check_ray_pack, is_ray_pack, ray_pack_len,
-    write_ray_pack,
+    CandidateConventions, CloudFacts, RayPackChecked, RayPackCounts, check_ray_pack, is_ray_pack,
+    ray_pack_len, write_ray_pack, write_scan_pack,
 };
 pub use page::{CastPage, ComparedHits, write_cast_page};
 pub use range_picture::{range_picture, top_picture};

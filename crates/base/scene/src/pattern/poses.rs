@@ -71,6 +71,11 @@ impl TimedPoses {
         Ok(Self { poses })
     }
 
+    /// The poses themselves.
+    pub fn poses(&self) -> &[TimedPose] {
+        &self.poses
+    }
+
     /// First and last time, seconds.
     pub fn span_s(&self) -> [f64; 2] {
         [self.poses[0].time_s, self.poses[self.poses.len() - 1].time_s]

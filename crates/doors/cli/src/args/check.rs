@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use raypencil::Precision;
+use raypencil::cast::CloudFrame;
 
 use crate::args::declared::DeclaredArguments;
-use crate::parsers::{number, precision};
+use crate::parsers::{cloud_frame, number, precision};
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
@@ -17,7 +18,9 @@ use crate::parsers::{number, precision};
   # A camera.exr of Blender.
   raypencil check data/packs/pyramids my-renders --channel depth.Z=ViewLayer.Depth.Z --miss 1e10
   # A depth image of 16 bits in millimetres, camera/depth.Z.png.
-  raypencil check data/packs/pyramids my-depths --scale 0.001")]
+  raypencil check data/packs/pyramids my-depths --scale 0.001
+  # A driver's point cloud, held to a pack of a LiDAR's scan.
+  raypencil check out/vlp16-pack my.pcd --frame sensor")]
 pub(crate) struct Check {
     /// Folder of the reference pack, with its manifest.json, of an input pack, or of a pack of rays.
     #[arg(value_name = "PACK")]
@@ -25,7 +28,8 @@ pub(crate) struct Check {
 
     /// Folder of the answers to check: EXR, NPY, NPZ, PFM, PNG or TIFF files or a Zarr store, named as docs/formats/files.md
     /// says, or as --channel declares. For an input pack:
-    /// triangles.npy, and reflectivity.npy if there is one. For a pack of rays: arrays as `cast` writes them.
+    /// triangles.npy, and reflectivity.npy if there is one. For a pack of rays: arrays as `cast` writes them, or a point cloud, a
+    /// .pcd or .ply.
     #[arg(value_name = "CANDIDATE")]
     pub(crate) candidate: PathBuf,
 
@@ -43,6 +47,11 @@ pub(crate) struct Check {
     /// Leave out the channel of faces, face.I.
     #[arg(long)]
     pub(crate) no_faces: bool,
+
+    /// Frame of the points of a cloud: that of the mesh, of the sensor when it fires each ray, as a driver gives them, or of the
+    /// sensor at the start of its scan. Without it: mesh.
+    #[arg(long, value_name = "FRAME", value_parser = cloud_frame())]
+    pub(crate) frame: Option<CloudFrame>,
 
     #[command(flatten)]
     pub(crate) declared: DeclaredArguments,

@@ -6,7 +6,7 @@ import os
 import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -130,6 +130,7 @@ def check(
     *,
     miss: float | None = None,
     no_faces: bool = False,
+    frame: Literal["mesh", "sensor", "start"] | None = None,
     channels: Mapping[str, str] | None = None,
     scale: float | None = None,
     verify: bool = False,
@@ -141,14 +142,16 @@ def check(
 
     Args:
         pack: folder of the pack.
-        answers: a folder of EXR, NPY, NPZ, PFM, PNG or TIFF files or a Zarr store, or arrays. For a pack of rays: a dictionary with ``face``, ``t``, ... or a
-            :class:`CastResult`. For a pack of a scene: a dictionary with the channels of docs/formats/files.md, as
+        answers: a folder of EXR, NPY, NPZ, PFM, PNG or TIFF files or a Zarr store, or arrays. For a pack of rays: a dictionary with ``face``, ``t``, ..., a
+            :class:`CastResult`, or the path of a point cloud (.pcd, .ply). For a pack of a scene: a dictionary with the channels of docs/formats/files.md, as
             ``"camera/range.T"`` or nested, or a :class:`RenderResult`. For an input pack: ``triangles`` (m, 9) and
             ``reflectivity`` (m,).
         arithmetic: that of the answers, whatever type they are stored in. Default: as the folder's ``candidate.json`` says,
             else ``"f64"``.
         miss: a number that means no hit; of whole numbers with ``scale``, as the file has it.
         no_faces: leave out the indices of faces.
+        frame: of the points of a cloud: that of the mesh (the default), of the sensor when it fires each ray, or of the sensor at
+            the start of its scan.
         channels: which channel of the files is which map, such as ``{"depth.Z": "ViewLayer.Depth.Z"}``. The map says what the
             numbers are: ``depth.Z`` along the optical axis, ``range.T`` along the ray. docs/formats/files.md has the rules; a
             ``candidate.json`` can declare the same.
@@ -169,7 +172,7 @@ def check(
         with stages(progress) as on_stage:
             answer = _raypencil.check(
                 os.fspath(pack), os.fspath(candidate), list((channels or {}).items()), scale, arithmetic, miss, no_faces,
-                verify, folder and os.fspath(folder), on_stage,
+                frame, verify, folder and os.fspath(folder), on_stage,
             )
         return CheckResult(answer, folder)
 

@@ -214,6 +214,7 @@ def check(
     arithmetic: str | None = None,
     miss: float | None = None,
     no_faces: bool = False,
+    frame: str | None = None,
     verify: bool = False,
     output: _Path | None = None,
     on_stage: _OnStage = None,

@@ -15,6 +15,10 @@
 //! | normal | 16 kappa u (1 + S / e) | two edges, each within 2 u S if vertices are rounded; e: the shortest edge |
 //! | cosine | that of the normal + 8 u | |
 //!
+//! Where a point or a range was stored with fewer digits than it was computed with, the error of storing is added
+//! (`Stated::point_error`, `range_error`): that of a point is the length of the vector of half units, which no turn of axes changes, so it
+//! holds for t along the ray and for each part of the point in any frame.
+//!
 //! A value that is not a number is wrong.
 
 use glam::DVec3;
@@ -179,7 +183,7 @@ impl Judge<'_> {
             None => {
                 let distance = t.or(range).expect("a distance for each ray, or faces");
                 if distance.is_finite() {
-                    return self.stated_face(ray, distance, t.is_some(), read).map(Reading::Hit);
+                    return self.stated_face(index, ray, distance, t.is_some(), read).map(Reading::Hit);
                 }
             }
         }
@@ -207,6 +211,7 @@ impl Judge<'_> {
     /// The face that is met at a distance that is stated, `t` or a range.
     fn stated_face(
         &self,
+        index: usize,
         ray: &CastRay,
         distance: f64,
         is_t: bool,
@@ -217,7 +222,7 @@ impl Judge<'_> {
         let is_there = |face: &FaceId| {
             self.exact
                 .values(ray, *face)
-                .is_some_and(|hit| (of(&hit) - distance).abs() <= self.bound(value, ray, &hit))
+                .is_some_and(|hit| (of(&hit) - distance).abs() <= self.bound(value, index, ray, &hit))
         };
         let all = || self.exact.all(ray, self.sides).into_iter().flat_map(|group| group.faces);
         let found = read.hit().and_then(|first| first.iter().copied().find(is_there));
@@ -230,24 +235,36 @@ impl Judge<'_> {
             let around = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
             around.into_iter().find_map(|by: [f64; 2]| {
                 let faces = self.exact.first_moved(ray, self.sides, by.map(|part| part * most));
-                faces.into_iter().find(|face| self.is_plane_at(ray, *face, distance, is_t))
+                faces.into_iter().find(|face| self.is_plane_at(index, ray, *face, distance, is_t))
             })
         };
         found.or_else(beside).ok_or(Wrong::Distance { stated: distance, exact })
     }
 
     /// Whether the ray passes the plane of a face at this distance.
-    fn is_plane_at(&self, ray: &CastRay, face: FaceId, distance: f64, is_t: bool) -> bool {
+    fn is_plane_at(&self, index: usize, ray: &CastRay, face: FaceId, distance: f64, is_t: bool) -> bool {
         let [a, b, c] = self.mesh.corners(face);
         let normal = (b - a).cross(c - a);
         let per_t = ray.direction.length();
         let t = normal.dot(a - ray.origin) / normal.dot(ray.direction);
         let range = if is_t { distance * per_t } else { distance };
-        (t * per_t - range).abs() <= self.exact.range_error(ray, face, self.precision)
+        let of_storing = self.of_storing(if is_t { CastValue::T } else { CastValue::Range }, index);
+        (t * per_t - range).abs() <= self.exact.range_error(ray, face, self.precision) + of_storing
+    }
+
+    /// How far storing may have moved a length, in the mesh's unit.
+    fn of_storing(&self, value: CastValue, index: usize) -> f64 {
+        let error = |array: &Option<Vec<f64>>| array.as_ref().map_or(0.0, |array| array[index]);
+        match value {
+            CastValue::T | CastValue::Point => error(&self.stated.point_error),
+            CastValue::Range => error(&self.stated.range_error),
+            _ => 0.0,
+        }
     }
 
     /// How far a value may be off by rounding.
-    fn bound(&self, value: CastValue, ray: &CastRay, hit: &CastHit) -> f64 {
+    fn bound(&self, value: CastValue, index: usize, ray: &CastRay, hit: &CastHit) -> f64 {
+        let of_storing = self.of_storing(value, index);
         let range = self.exact.range_error(ray, hit.face, self.precision);
         let lateral = self.exact.lateral_error(ray, self.precision);
         let length = ray.direction.length();
@@ -260,10 +277,10 @@ impl Judge<'_> {
         let kappa = aspect([a, b, c]);
         let normal = kappa * (16.0 * u + lateral / shortest);
         match value {
-            CastValue::T => range / length,
-            CastValue::Range => range,
+            CastValue::T => (range + of_storing) / length,
+            CastValue::Range => range + of_storing,
             CastValue::Side => 0.0,
-            CastValue::Point => range + lateral,
+            CastValue::Point => range + lateral + of_storing,
             CastValue::Barycentric => {
                 lateral / (hit.cos_incidence.double.abs() * (doubled_area / longest)) + 16.0 * u
             }
@@ -292,7 +309,7 @@ impl Judge<'_> {
             // NaN counts as the worst.
             let worst = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
             let error = worst(worst(differences[0], differences[1]), differences[2]);
-            let bound = self.bound(value, ray, hit);
+            let bound = self.bound(value, index, ray, hit);
             if bound.is_infinite() && error.is_finite() {
                 // Nothing can be said of it.
                 continue;

@@ -28,6 +28,10 @@ pub struct Stated {
     pub barycentric: Option<Vec<DVec3>>,
     /// Cosine of the angle between the normal and the reversed ray.
     pub cos_incidence: Option<Vec<f64>>,
+    /// How far storing may have moved the point, in the mesh's unit: it widens the bounds of `t` and `point`. `None`: not at all.
+    pub point_error: Option<Vec<f64>>,
+    /// The same for `range`.
+    pub range_error: Option<Vec<f64>>,
 }
 
 impl Stated {
@@ -48,6 +52,8 @@ impl Stated {
             normal: vector(|hit| hit.normal),
             barycentric: vector(|hit| DVec3::from_array(hit.barycentric)),
             cos_incidence: Some(answers.values(|hit| hit.cos_incidence, f64::NAN)),
+            point_error: None,
+            range_error: None,
         }
     }
 
@@ -66,6 +72,8 @@ impl Stated {
             normal: some(&self.normal, indices),
             barycentric: some(&self.barycentric, indices),
             cos_incidence: some(&self.cos_incidence, indices),
+            point_error: some(&self.point_error, indices),
+            range_error: some(&self.range_error, indices),
         }
     }
 }

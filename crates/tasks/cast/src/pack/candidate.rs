@@ -6,16 +6,19 @@ use glam::DVec3;
 use raypencil_files::{Fault, FileError, Limits, read_npy_numbers};
 use raypencil_scene::{FaceId, Side};
 
+use crate::cloud::CloudFrame;
 use crate::comparison::Stated;
 
 /// What a candidate declares of its arrays.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct CandidateConventions {
-    /// A number that means "no hit" in `face`, `t` and `range`. NaN and +Inf, and faces of -1 or 4294967295, always do. -Inf in
+    /// A number that means "no hit" in `face`, `t` and `range`; of a cloud in all three coordinates. NaN and +Inf, and faces of -1 or 4294967295, always do. -Inf in
     /// `t` and `range` says that what is hit is too near, unless it is this number.
     pub miss: Option<f64>,
     /// Leave out `face.npy`.
     pub ignores_faces: bool,
+    /// The frame of a point cloud.
+    pub frame: CloudFrame,
 }
 
 /// Reads what a folder has of `face.npy`, `t.npy`, `range.npy`, `side.npy`, `point.npy`, `normal.npy`, `barycentric.npy`
@@ -77,6 +80,8 @@ pub(super) fn read_candidate(
         normal: vectors("normal")?,
         barycentric: vectors("barycentric")?,
         cos_incidence: reader.numbers("cos_incidence", &[])?,
+        point_error: None,
+        range_error: None,
     };
     if stated.face.is_none() && stated.t.is_none() && stated.range.is_none() {
         let expected = "face.npy, t.npy or range.npy; without one of them it is not said which rays hit";

@@ -3,10 +3,12 @@
 use std::path::Path;
 
 use raypencil_files::{FileError, RayArray, quoted, ray_rows};
+use raypencil_mesh_io::is_cloud_file;
 use raypencil_referee::ExactCast;
 use raypencil_scene::{Precision, Progress};
 
 use super::candidate::{CandidateConventions, read_candidate};
+use super::clouds::{CloudFacts, of_cloud, read_cloud_of};
 use super::mistakes::explain;
 use super::read::RayPack;
 use crate::answers::{Answers, Questions, cast_with};
@@ -33,12 +35,16 @@ pub struct RayPackChecked {
     pub stated: Stated,
     /// Whether only fronts of faces are asked for.
     pub fronts_only: bool,
+    /// What was read of a point cloud; `None`: the candidate is a folder of arrays.
+    pub cloud: Option<CloudFacts>,
 }
 
 impl RayPackChecked {
-    /// Whether no ray is wrong, and some ray meets something.
+    /// Whether no ray is wrong, and some ray meets something, and each point of a cloud belongs to a ray by
+    /// all that the cloud says of it.
     pub fn passes(&self) -> bool {
         self.comparison.passes()
+            && self.cloud.as_ref().is_none_or(|cloud| cloud.strays.is_empty() && cloud.wrong_keys == 0)
     }
 
     /// The command that shows everything about the ray with this index.
@@ -50,7 +56,7 @@ impl RayPackChecked {
     }
 }
 
-/// Checks a candidate's folder of arrays against a pack of rays. The answers are computed again: only the question is read
+/// Checks a candidate against a pack of rays: a folder of arrays, or a point cloud, PCD or PLY. The answers are computed again: only the question is read
 /// from the pack.
 ///
 /// ```
@@ -75,7 +81,7 @@ impl RayPackChecked {
 ///
 /// # Errors
 /// A pack whose files are not those that it lists; an array that cannot be read or has another shape; a candidate that
-/// does not say which rays hit.
+/// does not say which rays hit; a cloud that cannot be read, or whose points cannot be laid on the rays.
 pub fn check_ray_pack(
     pack: &Path,
     candidate: &Path,
@@ -84,24 +90,40 @@ pub fn check_ray_pack(
     progress: &dyn Progress,
 ) -> Result<RayPackChecked, FileError> {
     progress.stage(&format!("{}: reading", pack.display()));
-    let RayPack { mesh, rays, sides, sha256: pack_sha256 } = RayPack::read(pack)?;
-    let stated = read_candidate(candidate, &rays.shape, conventions)?;
+    let RayPack { mesh, rays, sides, scan, sha256: pack_sha256 } = RayPack::read(pack)?;
+    let case = match is_cloud_file(candidate) {
+        true => Some(read_cloud_of(candidate, (&rays.shape, &rays.rays), scan.as_ref(), conventions)?),
+        false => None,
+    };
+    let stated = match &case {
+        Some(case) => case.stated(),
+        None => read_candidate(candidate, &rays.shape, conventions)?,
+    };
     let exact = ExactCast::new(&mesh);
     progress.stage(&format!("comparing {} rays", rays.rays.len()));
     let comparison = compare_with(&exact, &mesh, &rays.rays, sides, &stated, precision);
     let wrong: Vec<usize> = comparison.wrong().map(|(index, _)| index).collect();
     let why = (!wrong.is_empty()).then(|| {
         progress.stage("looking for a mistake that explains the wrong rays");
-        explain(&exact, &mesh, (&rays.rays, sides), &stated, precision, &wrong)
+        let of_cloud = case.as_ref().map(|case| of_cloud(case, &exact, sides));
+        let stated = (&stated, of_cloud.as_ref());
+        explain(&exact, &mesh, (&rays.rays, sides), stated, precision, &wrong)
     });
     let answers = cast_with(&exact, &rays.rays, sides, Questions::default(), progress);
     let name = candidate.file_name().map_or_else(|| ".".into(), |name| name.to_string_lossy().into_owned());
+    let cloud = case.map(|case| case.facts);
+    let of_keys = cloud.as_ref().and_then(|cloud| cloud.keys_why);
+    let why = match why {
+        Some(explanation) => explanation.map(|explanation| explanation.sentence()),
+        None => of_keys.map(|words| format!("100.0000 % agree if {words}")),
+    };
     Ok(RayPackChecked {
         name,
         pack: pack.display().to_string(),
         pack_sha256,
-        why: why.flatten().map(|explanation| explanation.sentence()),
+        why,
         fronts_only: sides == raypencil_scene::Sides::Fronts,
+        cloud,
         comparison,
         rays,
         answers,

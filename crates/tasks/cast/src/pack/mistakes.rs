@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3Swizzles};
 use raypencil_referee::ExactCast;
-use raypencil_scene::{CastRay, FaceId, Precision, Side, Sides, Triangles};
+use raypencil_scene::{CastRay, FaceId, Pose, Precision, Side, Sides, Triangles};
 
 use crate::comparison::{Stated, compare_with};
 
@@ -16,7 +16,7 @@ const CHUNK_RAYS: usize = 64;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Explanation {
     /// The mistake, or the two, in words.
-    pub mistakes: Vec<&'static str>,
+    pub mistakes: Vec<String>,
     /// Rays that are not wrong once it is undone, of those that were tried.
     pub agree: usize,
     /// Rays that were tried.
@@ -33,11 +33,81 @@ impl Explanation {
 
 /// A question and its stated answers.
 #[derive(Clone)]
-struct Trial {
-    rays: Vec<CastRay>,
+pub(super) struct Trial {
+    pub(super) rays: Vec<CastRay>,
     sides: Sides,
-    stated: Stated,
+    pub(super) stated: Stated,
     precision: Precision,
+    /// The index in the pack of each ray.
+    pub(super) indices: Vec<usize>,
+    /// The points of a cloud, from which t and point of `stated` follow.
+    pub(super) cloud: Option<CloudPart>,
+}
+
+/// The points of a cloud, one for each ray.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct CloudPart {
+    /// As the file has them, in its own frame; NaN where there is none.
+    pub(super) raw: Vec<DVec3>,
+    /// How far storing may have moved each.
+    pub(super) error: Vec<f64>,
+    /// The pose of the file's frame in the mesh's; `None`: it is the mesh's.
+    pub(super) pose: Vec<Option<Pose>>,
+}
+
+impl CloudPart {
+    /// The points of the rays with these indices.
+    fn some_of(&self, indices: &[usize]) -> Self {
+        Self {
+            raw: indices.iter().map(|&index| self.raw[index]).collect(),
+            error: indices.iter().map(|&index| self.error[index]).collect(),
+            pose: indices.iter().map(|&index| self.pose[index]).collect(),
+        }
+    }
+
+    /// A point in the mesh's frame, and how far rounding may have moved it.
+    pub(super) fn point(&self, k: usize) -> (DVec3, f64) {
+        match self.pose[k] {
+            None => (self.raw[k], self.error[k]),
+            Some(pose) => {
+                // A pose rounds each part at most 16 times, by the unit roundoff of what it adds; the program's and this one.
+                let size = self.raw[k].length() + pose.position.length();
+                (pose * self.raw[k], self.error[k] + 32.0 * Precision::F64.unit_roundoff * size)
+            }
+        }
+    }
+
+    /// Puts t and point of these rays in their place.
+    pub(super) fn state(&self, rays: &[CastRay], stated: &mut Stated) {
+        let points: Vec<(DVec3, f64)> = (0..rays.len()).map(|k| self.point(k)).collect();
+        let t = |(ray, (point, _)): (&CastRay, &(DVec3, f64))| {
+            (*point - ray.origin).dot(ray.direction) / ray.direction.length_squared()
+        };
+        stated.t = Some(rays.iter().zip(&points).map(t).collect());
+        stated.point = Some(points.iter().map(|(point, _)| *point).collect());
+        stated.point_error = Some(points.iter().map(|(_, error)| *error).collect());
+    }
+}
+
+/// A mistake that one kind of pack alone has.
+pub(super) struct Extra<'a> {
+    /// In words.
+    pub(super) words: String,
+    /// What undoes it.
+    pub(super) undo: Box<dyn Fn(&mut Trial) + 'a>,
+    /// Whether it is tried together with another one.
+    pub(super) is_common: bool,
+}
+
+/// A cloud in place of arrays: its points, and the mistakes of clouds.
+pub(super) struct OfCloud<'a> {
+    /// The points of all rays.
+    pub(super) part: &'a CloudPart,
+    /// Mistakes without numbers.
+    pub(super) extras: Vec<Extra<'a>>,
+    /// Mistakes with a number, which is estimated from a trial.
+    #[allow(clippy::type_complexity, reason = "one function, which borrows the same cloud")]
+    pub(super) estimated: Box<dyn Fn(&Trial) -> Vec<Extra<'a>> + 'a>,
 }
 
 /// A mistake in words, and what undoes it.
@@ -84,7 +154,8 @@ fn misses_at(trial: &mut Trial, number: f64, other: f64) {
     each(&mut trial.stated.range, miss);
 }
 
-const MISTAKES: &[Mistake] = &[
+/// Conventions of arrays.
+const OF_ARRAYS: &[Mistake] = &[
     Mistake { words: "face indices are 1 too large: the first face is 0", undo: |trial| renumber(trial, -1) },
     Mistake { words: "face indices are 1 too small: the first face is 0", undo: |trial| renumber(trial, 1) },
     Mistake {
@@ -186,6 +257,10 @@ const MISTAKES: &[Mistake] = &[
         words: "the last two barycentric weights are swapped: they are those of a, b, c",
         undo: |trial| weights(trial, |w| w.xzy()),
     },
+];
+
+/// Rules of rays.
+const OF_RULES: &[Mistake] = &[
     Mistake {
         words: "rays hit the backs of faces: only fronts are asked for",
         undo: |trial| trial.sides = Sides::Both,
@@ -211,6 +286,10 @@ const MISTAKES: &[Mistake] = &[
             }
         },
     },
+];
+
+/// Numbers that mean no hit.
+const OF_MISSES: &[Mistake] = &[
     Mistake { words: "0 means no hit: declare --miss 0", undo: |trial| misses_at(trial, 0.0, f64::INFINITY) },
     Mistake {
         words: "-1 means no hit: declare --miss -1",
@@ -249,11 +328,31 @@ const PRECISION: Mistake = Mistake {
     undo: |trial| trial.precision = Precision::F32,
 };
 
+/// A mistake of any kind.
+struct Named<'a> {
+    words: &'a str,
+    undo: &'a dyn Fn(&mut Trial),
+    is_common: bool,
+}
+
+impl<'a> Named<'a> {
+    fn of(mistake: &'a Mistake) -> Self {
+        Self { words: mistake.words, undo: &mistake.undo, is_common: true }
+    }
+
+    fn extra(extra: &'a Extra<'_>) -> Self {
+        Self { words: &extra.words, undo: &*extra.undo, is_common: extra.is_common }
+    }
+}
+
 impl Trial {
     /// The trial without a mistake; `None` if that changes nothing.
-    fn without(&self, mistake: &Mistake) -> Option<Self> {
+    fn without(&self, mistake: &Named<'_>) -> Option<Self> {
         let mut trial = self.clone();
         (mistake.undo)(&mut trial);
+        if let Some(cloud) = &trial.cloud {
+            cloud.state(&trial.rays, &mut trial.stated);
+        }
         (!trial.has_the_bits_of(self)).then_some(trial)
     }
 
@@ -310,7 +409,7 @@ pub(super) fn explain(
     exact: &ExactCast<'_>,
     mesh: &Triangles,
     (rays, sides): (&[CastRay], Sides),
-    stated: &Stated,
+    (stated, of_cloud): (&Stated, Option<&OfCloud<'_>>),
     precision: Precision,
     wrong: &[usize],
 ) -> Option<Explanation> {
@@ -327,34 +426,50 @@ pub(super) fn explain(
         sides,
         stated: stated.some_of(&indices),
         precision,
+        cloud: of_cloud.map(|of_cloud| of_cloud.part.some_of(&indices)),
+        indices,
     };
     let before = trial.wrong(exact, mesh, usize::MAX)?;
     // An explanation leaves at most one in a hundred of them wrong.
     let most = before / 100;
-    let explanation = |mistakes: Vec<&'static str>, left: usize| Explanation {
-        mistakes,
-        agree: indices.len() - left,
-        tried: indices.len(),
-    };
+    let tried = trial.indices.len();
+    let explanation =
+        |mistakes: Vec<String>, left: usize| Explanation { mistakes, agree: tried - left, tried };
     let about_sensors: &[Mistake] = if trial.is_about_sensors() { ABOUT_SENSORS } else { &[] };
-    let mistakes = || MISTAKES.iter().chain(about_sensors);
-    let single = |mistake| Some((mistake, trial.without(mistake)?.wrong(exact, mesh, most)?));
-    let singles = mistakes().chain([&PRECISION]).filter_map(single);
-    if let Some((mistake, left)) = singles.min_by_key(|(_, left): &(&Mistake, usize)| *left) {
-        return Some(explanation(vec![mistake.words], left));
+    // The points of a cloud are no arrays: their conventions are its own.
+    let lists = match of_cloud {
+        None => [OF_ARRAYS, OF_RULES, OF_MISSES, about_sensors],
+        Some(_) => [&[], OF_RULES, &[], about_sensors],
+    };
+    let extras = of_cloud.iter().flat_map(|of_cloud| &of_cloud.extras).map(Named::extra);
+    let mistakes: Vec<Named<'_>> = extras.chain(lists.into_iter().flatten().map(Named::of)).collect();
+    let estimated_of = |trial: &Trial| of_cloud.map_or_else(Vec::new, |of_cloud| (of_cloud.estimated)(trial));
+    let estimated = estimated_of(&trial);
+    let precision = Named::of(&PRECISION);
+    let single = |mistake: &Named<'_>| {
+        Some((mistake.words.to_string(), trial.without(mistake)?.wrong(exact, mesh, most)?))
+    };
+    let estimated = estimated.iter().map(Named::extra);
+    let estimated: Vec<(String, usize)> = estimated.filter_map(|mistake| single(&mistake)).collect();
+    let singles = mistakes.iter().chain([&precision]).filter_map(single).chain(estimated);
+    if let Some((mistake, left)) = singles.min_by_key(|(_, left): &(String, usize)| *left) {
+        return Some(explanation(vec![mistake], left));
     }
     // Both of a pair change something: else the pair is a single mistake.
-    let mut best: Option<(Vec<&'static str>, usize)> = None;
-    for (k, first) in mistakes().enumerate() {
+    let mut best: Option<(Vec<String>, usize)> = None;
+    for (k, first) in mistakes.iter().enumerate().filter(|(_, first)| first.is_common) {
         let Some(once) = trial.without(first) else { continue };
-        for second in mistakes().skip(k + 1) {
+        let estimated = estimated_of(&once);
+        let others = mistakes.iter().skip(k + 1).filter(|second| second.is_common);
+        let others = others.map(|second| Named { ..*second }).chain(estimated.iter().map(Named::extra));
+        for second in others {
             let most = match best {
                 Some((_, 0)) => return best.map(|(mistakes, left)| explanation(mistakes, left)),
                 Some((_, kept)) => kept - 1,
                 None => most,
             };
-            if let Some(left) = once.without(second).and_then(|twice| twice.wrong(exact, mesh, most)) {
-                best = Some((vec![first.words, second.words], left));
+            if let Some(left) = once.without(&second).and_then(|twice| twice.wrong(exact, mesh, most)) {
+                best = Some((vec![first.words.to_string(), second.words.to_string()], left));
             }
         }
     }

@@ -3,7 +3,9 @@
 //! ```text
 //! write       the files of a pack, and how many of its rays test what
 //! read        a pack, after its digests are checked
+//! scan        times, channels and poses of a sensor's scan, beside its rays
 //! candidate   another program's arrays
+//! clouds/     another program's point cloud
 //! mistakes    what a candidate may do otherwise, undone one by one and two by two
 //! check       a candidate against a pack
 //! report      the check in the form of every check
@@ -11,15 +13,18 @@
 
 mod candidate;
 mod check;
+mod clouds;
 mod mistakes;
 mod read;
 mod report;
+mod scan;
 mod write;
 
 pub use candidate::CandidateConventions;
 pub use check::{RayPackChecked, check_ray_pack};
+pub use clouds::CloudFacts;
 pub use read::{is_ray_pack, ray_pack_len};
-pub use write::{RayPackCounts, write_ray_pack};
+pub use write::{RayPackCounts, write_ray_pack, write_scan_pack};
 
 /// File that marks a pack of rays. It is written last.
 const PACK_NAME: &str = "raypack.json";

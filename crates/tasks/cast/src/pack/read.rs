@@ -7,6 +7,7 @@ use raypencil_mesh_io::load_triangles;
 use raypencil_scene::{Sides, Triangles};
 use serde::Deserialize;
 
+use super::scan::Scan;
 use super::{PACK_FORMAT, PACK_NAME};
 
 /// The question of a pack. Its answers are computed again when a candidate is checked.
@@ -14,6 +15,8 @@ pub(super) struct RayPack {
     pub(super) mesh: Triangles,
     pub(super) rays: RayArray,
     pub(super) sides: Sides,
+    /// What is known of a sensor's scan; `None`: the rays are of no set.
+    pub(super) scan: Option<Scan>,
     /// SHA-256 of `raypack.json`.
     pub(super) sha256: String,
 }
@@ -24,7 +27,13 @@ struct Document {
     format: u64,
     kind: String,
     sides: String,
+    scan: Option<ScanDocument>,
     files: Vec<PackFile>,
+}
+
+#[derive(Deserialize)]
+struct ScanDocument {
+    mounting: String,
 }
 
 #[derive(Deserialize)]
@@ -70,7 +79,13 @@ impl RayPack {
             "fronts" => Sides::Fronts,
             other => return Err(fault(&path, "sides", other, "both or fronts")),
         };
-        for question in ["vertices.npy", "faces.npy", "rays.npy"] {
+        let listed = |name: &str| document.files.iter().any(|file| file.path == name);
+        let mut questions = vec!["vertices.npy", "faces.npy", "rays.npy"];
+        if document.scan.is_some() {
+            questions.push("pose.npy");
+            questions.extend(["time.npy", "elevation.npy"].into_iter().filter(|name| listed(name)));
+        }
+        for question in questions {
             let Some(listed) = document.files.iter().find(|file| file.path == question) else {
                 return Err(fault(&path, "files", format!("no {question}"), "its path and SHA-256"));
             };
@@ -85,6 +100,8 @@ impl RayPack {
                 ));
             }
         }
-        Ok(Self { mesh: load_triangles(folder)?, rays: read_rays(&folder.join("rays.npy"))?, sides, sha256 })
+        let rays = read_rays(&folder.join("rays.npy"))?;
+        let scan = document.scan.as_ref().map(|scan| Scan::read(folder, &rays.shape, &scan.mounting, listed));
+        Ok(Self { mesh: load_triangles(folder)?, rays, sides, scan: scan.transpose()?, sha256 })
     }
 }

@@ -2,7 +2,7 @@
 
 use raypencil_judge::Class;
 use raypencil_pack::{BundleFindings, CheckFindings, ItemFindings, PackForm, PackLabel, WorstOf, WrongRay};
-use raypencil_report::{DefectLine, Document};
+use raypencil_report::{DefectLine, Document, counted};
 use raypencil_scene::{FaceId, Reading};
 use serde_json::{Map, Value, json};
 
@@ -63,7 +63,7 @@ impl RayPackChecked {
             coarseness: None,
             headline: None,
             why: self.why.clone(),
-            notes: vec![format!("{}.", counts_text(&self.answers))],
+            notes: self.notes(),
             sharpness: None,
             sizes: None,
             facts: Vec::new(),
@@ -72,6 +72,47 @@ impl RayPackChecked {
             explorer: String::new(),
             bundles: vec![bundle],
         }
+    }
+
+    /// What the rays are, and what was judged of a cloud.
+    fn notes(&self) -> Vec<String> {
+        let mut notes = vec![format!("{}.", counts_text(&self.answers))];
+        let Some(cloud) = &self.cloud else { return notes };
+        let range = if cloud.has_range { ", and the field range" } else { "" };
+        notes.push(format!(
+            "{} in the frame of {}, laid on the rays {}. Judged: x, y, z, which rays have a point{range}.",
+            counted(cloud.points as u64, "point", "points"),
+            cloud.frame.words(),
+            cloud.assigned
+        ));
+        let of_kind = |is_kind: fn(&Wrong) -> bool| {
+            self.comparison.wrong().filter(|(_, wrong)| is_kind(wrong)).count() as u64
+        };
+        let missing = of_kind(|wrong| {
+            matches!(wrong, Wrong::Hit { stated: Reading::Miss | Reading::TooNear, exact: Reading::Hit(_) })
+        });
+        let invented =
+            of_kind(|wrong| matches!(wrong, Wrong::Distance { exact: Reading::Miss | Reading::TooNear, .. }));
+        if missing + invented > 0 {
+            notes.push(format!(
+                "{} without a point that should have one; {} where nothing is measured.",
+                counted(missing, "ray", "rays"),
+                counted(invented, "point", "points")
+            ));
+        }
+        if cloud.wrong_keys > 0 {
+            notes.push(format!(
+                "Ring, channel or time of {} are those of another ray.",
+                counted(cloud.wrong_keys as u64, "point", "points")
+            ));
+        }
+        if let Some(first) = cloud.strays.first() {
+            notes.push(format!(
+                "{} of no ray, or of one that has another point; the first is point {first}, counted from 0.",
+                counted(cloud.strays.len() as u64, "point", "points")
+            ));
+        }
+        notes
     }
 
     /// The rays as a bundle of this name.

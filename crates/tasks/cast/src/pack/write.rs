@@ -9,9 +9,10 @@ use raypencil_files::{
 };
 use raypencil_referee::ExactCast;
 use raypencil_report::VERSION;
-use raypencil_scene::{CastRay, FaceId, Progress, Reading, Side, Sides, Triangles};
+use raypencil_scene::{CastRay, FaceId, NamedRaySet, Progress, Reading, Side, Sides, Triangles};
 use serde_json::json;
 
+use super::scan::Scan;
 use super::{PACK_FORMAT, PACK_NAME};
 use crate::answers::{Questions, cast};
 use crate::write::{CastSource, write_answers};
@@ -109,6 +110,32 @@ pub fn write_ray_pack(
     source: &CastSource,
     progress: &dyn Progress,
 ) -> Result<RayPackCounts, FolderError> {
+    write_pack_of(folder, (mesh, rays, sides), None, source, progress)
+}
+
+/// The same of a sensor's scan, to which point clouds can be held: beside the rays it has `time.npy` (the rays' shape, seconds), if
+/// they have times, `elevation.npy` (channels, degrees) of a spinning head, and `pose.npy` (poses, 8) with the time, position and
+/// quaternion, its scalar last, of the sensor in the mesh's frame. `sides` may differ from those of the set.
+///
+/// # Errors
+/// The folder or a file cannot be written; the message names it.
+pub fn write_scan_pack(
+    folder: &Path,
+    (mesh, set, sides): (&Triangles, &NamedRaySet, Sides),
+    source: &CastSource,
+    progress: &dyn Progress,
+) -> Result<RayPackCounts, FolderError> {
+    let rays = RayArray { shape: set.shape.clone(), rays: set.set.rays().to_vec() };
+    write_pack_of(folder, (mesh, &rays, sides), Some(&Scan::of(set)), source, progress)
+}
+
+fn write_pack_of(
+    folder: &Path,
+    (mesh, rays, sides): (&Triangles, &RayArray, Sides),
+    scan: Option<&Scan>,
+    source: &CastSource,
+    progress: &dyn Progress,
+) -> Result<RayPackCounts, FolderError> {
     let last = begin_output_folder(folder, PACK_NAME)?;
     let questions = Questions { any: true, all: true, margins: true };
     let answers = cast(mesh, &rays.rays, sides, questions, progress);
@@ -123,6 +150,9 @@ pub fn write_ray_pack(
     write_npy_numbers(folder.join("faces.npy"), &[mesh.faces().len() as u64, 3], &faces)?;
     write_npy_numbers(folder.join("rays.npy"), &with_width, &numbers)?;
     let mut names: Vec<String> = ["vertices", "faces", "rays"].map(|name| format!("{name}.npy")).into();
+    if let Some(scan) = scan {
+        names.extend(scan.write(folder, &rays.shape)?);
+    }
     names.extend(answer_names());
     let files = names.iter().map(|name| {
         let path = folder.join(name);
@@ -130,7 +160,7 @@ pub fn write_ray_pack(
         Ok(json!({ "path": name, "bytes": bytes, "sha256": sha256 }))
     });
     let files: Vec<serde_json::Value> = files.collect::<Result<_, FileError>>()?;
-    let document = json!({
+    let mut document = json!({
         "format": PACK_FORMAT,
         "kind": "rays",
         "raypencilVersion": VERSION,
@@ -141,6 +171,9 @@ pub fn write_ray_pack(
         },
         "files": files,
     });
+    if let Some(scan) = scan {
+        document["scan"] = json!({ "mounting": scan.mounting_word() });
+    }
     write_atomically(&last, |file| file.write_all(format!("{document:#}\n").as_bytes()))?;
     Ok(counts)
 }

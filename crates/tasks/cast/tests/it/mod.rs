@@ -2,6 +2,7 @@
 
 mod bounds;
 mod cloud;
+mod clouds_of_others;
 mod columns;
 mod lidar;
 mod packs;

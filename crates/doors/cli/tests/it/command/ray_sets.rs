@@ -219,3 +219,51 @@ fn patterns_become_packs_of_rays() {
     let wrong = raypencil(folder.path(), &["pack", "floor.obj", "--rays", "none.toml", "-o", "none"]);
     assert_trouble(&wrong, &["none.toml"]);
 }
+
+#[test]
+fn clouds_of_cast_are_right_in_their_own_frame_and_told_in_another() {
+    let folder = folder(SCENE);
+    let at = |name: &str, text: &str| fs::write(folder.path().join(name), text).expect("a file");
+    // A prism that lies along no axis, and a head that drives past it.
+    at("prism.obj", "v 3 -2 -1\nv 3.5 4 -1\nv 4 0 3\nv -4 -3 -1\nf 1 2 3\nf 1 4 2\n");
+    let head = "spinning = { elevations_deg = [2, -20, -9], steps = 40, firing_times_us = [0, 500, 900] }\n";
+    let poses = "poses = [{ time_s = 0, position_m = [0, 0, 0.5] }, \
+                 { time_s = 0.1, position_m = [1, 0.25, 0.5], yaw_left_deg = 20 }]\n";
+    at("moving.toml", &format!("[[rays]]\nname = \"moving\"\n{head}{poses}"));
+    screen(folder.path(), &["pack", "prism.obj", "--rays", "moving.toml", "-o", "pack"], 0);
+    screen(folder.path(), &["cast", "prism.obj", "moving.toml", "-o", "cast"], 0);
+    for (file, frame) in [("cloud.pcd", "mesh"), ("cloud-sensor.pcd", "sensor"), ("cloud-start.pcd", "start")]
+    {
+        let file = format!("cast/{file}");
+        let shown = screen(folder.path(), &["check", "pack", &file, "--frame", frame], 0);
+        assert!(shown.contains("laid on the rays by ring and time. Judged: x, y, z, which rays have a point, and the field range"), "{shown}");
+    }
+    let shown = screen(folder.path(), &["check", "pack", "cast/cloud-start.pcd", "-o", "report"], 1);
+    assert!(shown.contains("declare --frame start"), "{shown}");
+    let report = fs::read_to_string(folder.path().join("report/check.json")).expect("a file");
+    let report: Value = serde_json::from_str(&report).expect("JSON");
+    let schema: Value =
+        serde_json::from_str(include_str!("../../../../../../docs/formats/check.schema.json")).expect("JSON");
+    assert_eq!(schema_faults(&schema, &report), Vec::<String>::new());
+    // The points alone, of a sensor that moves: their rays are not known.
+    assert_trouble(
+        &raypencil(folder.path(), &["check", "pack", "cast/cloud.ply"]),
+        &["cloud.ply", "belong to no ray that is known", "`ring` (or `channel`) and `time`"],
+    );
+    assert_trouble(
+        &raypencil(folder.path(), &["check", "pack", "cast", "--frame", "mesh"]),
+        &["--frame", "no point cloud"],
+    );
+    at("rays.csv", "0,0,0, 1,0,0\n");
+    screen(folder.path(), &["pack", "prism.obj", "--rays", "rays.csv", "-o", "rays"], 0);
+    assert_trouble(
+        &raypencil(folder.path(), &["check", "rays", "cast/cloud.pcd", "--frame", "sensor"]),
+        &["--frame sensor", "a pack of a sensor's scan"],
+    );
+    // A scan whose poses were changed is another one.
+    let poses = folder.path().join("pack/pose.npy");
+    let mut bytes = fs::read(&poses).expect("a file");
+    *bytes.last_mut().expect("a byte") ^= 1;
+    fs::write(&poses, bytes).expect("a file");
+    assert_trouble(&raypencil(folder.path(), &["check", "pack", "cast/cloud.pcd"]), &["pose.npy", "SHA-256"]);
+}

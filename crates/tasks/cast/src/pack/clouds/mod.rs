@@ -1,0 +1,19 @@
+//! A point cloud against a pack of rays.
+//!
+//! ```text
+//! assign     the ray of each point: by channel and time, by order, or by direction
+//! read       a file, its points on their rays, and what is stated by them
+//! turn       how a spinning head turns, from its rays and their times
+//! fit        numbers of a mistake, from the points
+//! mistakes   what a simulator of a sensor may do otherwise
+//! ```
+
+mod assign;
+mod fit;
+mod mistakes;
+mod read;
+mod turn;
+
+pub(super) use mistakes::of_cloud;
+pub use read::CloudFacts;
+pub(super) use read::read_cloud_of;

@@ -1,0 +1,532 @@
+//! Point clouds of other simulators against a pack of a scan: honest ones pass, wrong ones are told their mistake.
+
+use std::path::PathBuf;
+
+use glam::DVec3;
+use raypencil_cast::{
+    CandidateConventions, CastSource, CloudFrame, Questions, RayPackChecked, cast, check_ray_pack,
+    write_scan_pack,
+};
+use raypencil_scene::pattern::{Mounting, Spinning, TimedPose, TimedPoses};
+use raypencil_scene::{CastRay, NamedRaySet, Pose, Precision, RaySet, Sides, Silent, Triangles};
+
+/// A room without any symmetry, with a ridge in it and a gap in a wall: rays through the gap miss.
+fn room() -> Triangles {
+    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
+    let mut quad = |corners: [[f64; 3]; 4]| {
+        let first = vertices.len() as u32;
+        vertices.extend(corners);
+        faces.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+    };
+    quad([[-7.0, -5.0, 0.0], [12.0, -5.0, 0.3], [12.0, 9.0, 0.9], [-7.0, 9.0, 0.1]]);
+    quad([[12.0, -5.0, -1.0], [12.0, 9.0, -1.0], [12.0, 9.0, 5.0], [12.0, -5.0, 5.0]]);
+    quad([[-7.0, 9.0, -1.0], [-7.0, -5.0, -1.0], [-7.0, -5.0, 5.0], [-7.0, 9.0, 5.0]]);
+    quad([[12.0, 9.0, -1.0], [-7.0, 9.0, -1.0], [-7.0, 9.0, 5.0], [12.0, 9.0, 5.0]]);
+    // The last wall ends at x = 5.
+    quad([[-7.0, -5.0, -1.0], [5.0, -5.0, -1.0], [5.0, -5.0, 5.0], [-7.0, -5.0, 5.0]]);
+    quad([[3.0, 2.0, 0.0], [5.0, 6.0, 0.0], [4.5, 6.0, 3.0], [4.0, 2.5, 2.5]]);
+    Triangles::new(vertices, faces).expect("a room")
+}
+
+/// A head of 16 channels and 120 sequences of 0.8 ms, which turns clockwise from 25 degrees on.
+fn head() -> Spinning {
+    let preset = Spinning::preset("vlp-16").expect("a preset");
+    let mut head =
+        Spinning { azimuth_start_deg: 25.0, azimuth_step_deg: -3.0, steps: 120, period_s: 8e-4, ..preset };
+    head.channels.iter_mut().for_each(|channel| channel.firing_s *= 12.0);
+    head
+}
+
+/// A drive along a bend: 3 m/s, and 40 degrees in a tenth of a second.
+fn bend() -> Mounting {
+    let at = |k: u32| {
+        let time_s = f64::from(k) * 0.025;
+        let turn = Pose::from_axis_angle(DVec3::Z, time_s * 7.0);
+        TimedPose {
+            time_s,
+            pose: Pose { position: DVec3::new(30.0 * time_s, 40.0 * time_s * time_s, 1.4), ..turn },
+        }
+    };
+    Mounting::Moving(TimedPoses::new((0..6).map(at).collect(), "poses").expect("poses"))
+}
+
+fn still() -> Mounting {
+    let turn = Pose::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), 0.4);
+    Mounting::Fixed(Pose { position: DVec3::new(1.0, 0.5, 1.5), ..turn })
+}
+
+fn set_of(head: &Spinning, mounting: &Mounting) -> NamedRaySet {
+    let rays = mounting.place(head.rays("rays").expect("rays"), "rays").expect("poses");
+    NamedRaySet::new("head", rays, Sides::Both).expect("a set")
+}
+
+/// A point as a simulator writes it.
+#[derive(Debug, Clone, Copy)]
+struct Point {
+    place: DVec3,
+    ring: u16,
+    time: f64,
+    range: f64,
+}
+
+/// The points of a right simulator, in a frame, one for each ray: NaN for a miss.
+fn points(set: &NamedRaySet, frame: CloudFrame) -> Vec<Point> {
+    let answers = cast(&room(), set.set.rays(), Sides::Both, Questions::default(), &Silent);
+    let elevations = set.elevations_deg.as_ref().expect("a head");
+    let rank =
+        |channel: usize| elevations.iter().filter(|other| **other < elevations[channel]).count() as u16;
+    let times = set.times.as_ref().expect("times");
+    let point = |(index, read): (usize, &raypencil_scene::Reading<raypencil_cast::FirstHit>)| {
+        let (place, range) = read.hit().map_or((DVec3::NAN, f64::NAN), |hit| (hit.point, hit.range));
+        let pose = match frame {
+            CloudFrame::Mesh => Pose::IDENTITY,
+            CloudFrame::Sensor => set.mounting.at(times[index]).expect("a pose"),
+            CloudFrame::SensorAtStart => set.mounting.first(),
+        };
+        Point {
+            place: pose.inverse() * place,
+            ring: rank(index % elevations.len()),
+            time: times[index],
+            range,
+        }
+    };
+    answers.first.iter().enumerate().map(point).collect()
+}
+
+/// What a cloud's file has beside x, y and z.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Fields {
+    /// Nothing.
+    None,
+    /// ring and time.
+    Keys,
+    /// range.
+    Range,
+}
+
+/// A pack of a scan, and the file of a cloud.
+struct Trial {
+    folder: tempfile::TempDir,
+    set: NamedRaySet,
+}
+
+impl Trial {
+    fn new(head: &Spinning, mounting: &Mounting) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let set = set_of(head, mounting);
+        let source = CastSource { mesh: "room".into(), rays: "head".into(), ..CastSource::default() };
+        let pack = folder.path().join("pack");
+        write_scan_pack(&pack, (&room(), &set, Sides::Both), &source, &Silent).expect("a pack");
+        Self { folder, set }
+    }
+
+    /// Writes single precision, binary.
+    fn write(&self, points: &[Point], fields: Fields, [width, height]: [usize; 2]) -> PathBuf {
+        let path = self.folder.path().join("theirs.pcd");
+        let (names, sizes, kinds) = match fields {
+            Fields::None => ("", "", ""),
+            Fields::Keys => (" ring time", " 2 4", " U F"),
+            Fields::Range => (" range", " 4", " F"),
+        };
+        let mut bytes = format!(
+            "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z{names}\nSIZE 4 4 4{sizes}\nTYPE F F F{kinds}\nWIDTH {width}\nHEIGHT {height}\n\
+             VIEWPOINT 0 0 0 1 0 0 0\nPOINTS {}\nDATA binary\n",
+            points.len()
+        )
+        .into_bytes();
+        for point in points {
+            point.place.to_array().iter().for_each(|part| bytes.extend((*part as f32).to_le_bytes()));
+            match fields {
+                Fields::None => {}
+                Fields::Keys => {
+                    bytes.extend(point.ring.to_le_bytes());
+                    bytes.extend((point.time as f32).to_le_bytes());
+                }
+                Fields::Range => bytes.extend((point.range as f32).to_le_bytes()),
+            }
+        }
+        std::fs::write(&path, bytes).expect("a file");
+        path
+    }
+
+    fn check(&self, file: &PathBuf, conventions: CandidateConventions) -> Result<RayPackChecked, String> {
+        check_ray_pack(&self.folder.path().join("pack"), file, Precision::F64, conventions, &Silent)
+            .map_err(|error| error.to_string())
+    }
+
+    /// Checks points, organised as the pack's rays, in a frame.
+    fn judge(&self, points: &[Point], fields: Fields, frame: CloudFrame) -> RayPackChecked {
+        let file = self.write(points, fields, [16, points.len() / 16]);
+        self.check(&file, CandidateConventions { frame, ..Default::default() }).expect("a check")
+    }
+
+    /// The same points without those that are none, and without order.
+    fn judge_dense(&self, points: &[Point], fields: Fields, frame: CloudFrame) -> RayPackChecked {
+        let dense: Vec<Point> = points.iter().copied().filter(|point| point.place.is_finite()).collect();
+        let file = self.write(&dense, fields, [dense.len(), 1]);
+        self.check(&file, CandidateConventions { frame, ..Default::default() }).expect("a check")
+    }
+
+    /// The points fail, and this is why.
+    #[track_caller]
+    fn expect_why(&self, points: &[Point], fields: Fields, frame: CloudFrame, words: &str) {
+        let checked = self.judge(points, fields, frame);
+        assert!(!checked.passes());
+        let why = checked.why.unwrap_or_else(|| "no reason".into());
+        assert!(why.contains(words) && why.starts_with("100.0000 %"), "{why}");
+    }
+}
+
+/// The rays of another head or mounting, in the place of those of a set.
+fn fired(set: &NamedRaySet, ray: impl Fn(usize, &CastRay) -> CastRay) -> NamedRaySet {
+    let rays = set.set.rays().iter().enumerate().map(|(index, asked)| ray(index, asked)).collect();
+    NamedRaySet { set: RaySet::new(rays, Sides::Both).expect("rays"), ..set.clone() }
+}
+
+#[test]
+fn an_honest_simulator_of_single_precision_storage_passes_in_each_frame_and_by_each_key() {
+    for mounting in [still(), bend()] {
+        let trial = Trial::new(&head(), &mounting);
+        for frame in CloudFrame::ALL {
+            let points = points(&trial.set, frame);
+            assert!(points.iter().any(|point| point.place.is_nan()), "some rays miss");
+            for (fields, by) in [
+                (Fields::None, "by the order of the points"),
+                (Fields::Range, "by the order of the points"),
+                (Fields::Keys, "by ring and time"),
+            ] {
+                let checked = trial.judge(&points, fields, frame);
+                assert!(checked.passes(), "{frame:?} {fields:?}: {:?}", checked.why);
+                assert_eq!(checked.cloud.expect("a cloud").assigned, by);
+            }
+            assert!(trial.judge_dense(&points, Fields::Keys, frame).passes());
+        }
+        let of_sensor = points(&trial.set, CloudFrame::Sensor);
+        let checked = trial.judge_dense(&of_sensor, Fields::None, CloudFrame::Sensor);
+        assert!(checked.passes());
+        assert_eq!(checked.cloud.expect("a cloud").assigned, "by direction");
+    }
+}
+
+#[test]
+fn storage_is_excused_by_half_a_unit_and_no_more() {
+    let trial = Trial::new(&head(), &still());
+    let right = points(&trial.set, CloudFrame::Sensor);
+    // One unit of single precision along x is twice what rounding does: 2^-20 m from 8 m on.
+    let far = right.iter().position(|point| point.place.x > 8.0).expect("a far point");
+    let mut moved = right.clone();
+    moved[far].place.x = f64::from((right[far].place.x as f32).next_up().next_up());
+    let checked = trial.judge(&moved, Fields::None, CloudFrame::Sensor);
+    assert_eq!(checked.comparison.wrong().map(|(index, _)| index).collect::<Vec<_>>(), [far]);
+}
+
+#[test]
+fn on_a_plane_points_are_those_of_the_closed_form() {
+    // A floor at z = 0, and a head 2 m above it: a channel of elevation -e meets it at the level distance 2 / tan e.
+    let corners = [[-500.0, -500.0, 0.0], [500.0, -500.0, 0.0], [500.0, 500.0, 0.0], [-500.0, 500.0, 0.0]];
+    let floor = Triangles::new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).expect("a floor");
+    let mut head = head();
+    head.channels.iter_mut().for_each(|channel| channel.vertical_m = 0.0);
+    head.max_range_m = 400.0;
+    let set = set_of(&head, &Mounting::Fixed(Pose::from_position(DVec3::Z * 2.0)));
+    let folder = tempfile::tempdir().expect("a folder");
+    let pack = folder.path().join("pack");
+    write_scan_pack(&pack, (&floor, &set, Sides::Both), &CastSource::default(), &Silent).expect("a pack");
+    let mut text = String::from("ply\nformat ascii 1.0\nelement vertex 1920\n");
+    text += "property double x\nproperty double y\nproperty double z\nend_header\n";
+    for step in 0..head.steps {
+        for channel in &head.channels {
+            let azimuth = (25.0 - 3.0 * (step as f64 + channel.firing_s / 8e-4)).to_radians();
+            let level = 2.0 / libm::tan(-channel.elevation_deg.to_radians());
+            if channel.elevation_deg < 0.0 && level < 390.0 {
+                text += &format!("{:.6} {:.6} 0.0\n", level * libm::cos(azimuth), level * libm::sin(azimuth));
+            } else {
+                text += "nan nan nan\n";
+            }
+        }
+    }
+    let check = |text: &str| {
+        let file = folder.path().join("closed.ply");
+        std::fs::write(&file, text).expect("a file");
+        check_ray_pack(&pack, &file, Precision::F64, CandidateConventions::default(), &Silent)
+            .expect("a check")
+    };
+    let checked = check(&text);
+    assert!(checked.passes(), "{:?}", checked.why);
+    assert_eq!(checked.comparison.met, 960);
+    // z has one decimal: 0.2 is beyond its half unit, 0.0 is not.
+    let wrong = check(&text.replacen(" 0.0\n", " 0.2\n", 1)).comparison;
+    assert_eq!(wrong.counts().wrong, 1);
+}
+
+#[test]
+fn frames_and_axes_are_told() {
+    let trial = Trial::new(&head(), &bend());
+    let of = |frame| points(&trial.set, frame);
+    let mesh = CloudFrame::Mesh;
+    trial.expect_why(
+        &of(CloudFrame::Sensor),
+        Fields::None,
+        mesh,
+        "the sensor, at the time of each ray: declare --frame sensor",
+    );
+    trial.expect_why(&of(CloudFrame::SensorAtStart), Fields::None, mesh, "declare --frame start");
+    trial.expect_why(
+        &of(mesh),
+        Fields::None,
+        CloudFrame::Sensor,
+        "the frame of the mesh: declare --frame mesh",
+    );
+    let turned = |change: fn(DVec3) -> DVec3| -> Vec<Point> {
+        of(CloudFrame::Sensor).into_iter().map(|one| Point { place: change(one.place), ..one }).collect()
+    };
+    let sensor = CloudFrame::Sensor;
+    trial.expect_why(&turned(|p| DVec3::new(p.y, p.x, p.z)), Fields::None, sensor, "hold y, x, z");
+    trial.expect_why(&turned(|p| DVec3::new(-p.y, -p.z, p.x)), Fields::None, sensor, "hold -y, -z, x");
+    trial.expect_why(&turned(|p| p * 1000.0), Fields::None, sensor, "thousandths");
+    // Both at once.
+    trial.expect_why(&turned(|p| DVec3::new(p.x, -p.y, p.z)), Fields::None, mesh, "hold x, -y, z");
+    // Only x, y and z are placed, by the pose of the start.
+    let start = trial.set.mounting.first();
+    let placed =
+        of(sensor).into_iter().map(|one| Point { place: start * one.place, ..one }).collect::<Vec<_>>();
+    trial.expect_why(&placed, Fields::None, mesh, "by the sensor's pose at the start of the scan");
+}
+
+#[test]
+fn rings_and_orders_are_told() {
+    let trial = Trial::new(&head(), &still());
+    let right = points(&trial.set, CloudFrame::Mesh);
+    let with = |ring: fn(usize, u16) -> u16| -> Vec<Point> {
+        right.iter().enumerate().map(|(k, one)| Point { ring: ring(k, one.ring), ..*one }).collect()
+    };
+    let mesh = CloudFrame::Mesh;
+    trial.expect_why(&with(|_, ring| 15 - ring), Fields::Keys, mesh, "ring counts channels from above");
+    trial.expect_why(
+        &with(|k, _| (k % 16) as u16),
+        Fields::Keys,
+        mesh,
+        "ring is the channel in the order of the manual",
+    );
+    let reversed: Vec<Point> = (0..right.len()).map(|k| right[k / 16 * 16 + 15 - k % 16]).collect();
+    trial.expect_why(&reversed, Fields::None, mesh, "in the opposite order");
+    // Of a head that stands still a late point cannot be told from a late head.
+    let moving = Trial::new(&head(), &bend());
+    let of_bend = points(&moving.set, mesh);
+    let none = Point { place: DVec3::NAN, ..of_bend[0] };
+    let late: Vec<Point> =
+        (0..right.len()).map(|k| k.checked_sub(16).map_or(none, |before| of_bend[before])).collect();
+    let checked = moving.judge(&late, Fields::None, mesh);
+    assert!(
+        checked.why.as_deref().is_some_and(|why| why.contains("one firing sequence late")),
+        "{:?}",
+        checked.why
+    );
+    let rows: Vec<Point> = (0..right.len()).map(|k| right[k % 120 * 16 + k / 120]).collect();
+    let file = trial.write(&rows, Fields::None, [120, 16]);
+    let checked = trial.check(&file, CandidateConventions::default()).expect("a check");
+    assert!(checked.passes(), "{:?}", checked.why);
+    // The same rows in a file that claims no order.
+    let file = trial.write(&rows, Fields::None, [right.len(), 1]);
+    let why = trial.check(&file, CandidateConventions::default()).expect("a check").why;
+    assert!(why.as_deref().is_some_and(|why| why.contains("rows of one channel")), "{why:?}");
+}
+
+#[test]
+fn a_head_that_turns_otherwise_is_told() {
+    let other = |change: fn(&mut Spinning)| {
+        let mut head = head();
+        change(&mut head);
+        head
+    };
+    for (mounting, frame) in [(still(), CloudFrame::Mesh), (bend(), CloudFrame::Sensor)] {
+        let trial = Trial::new(&head(), &mounting);
+        let of = |head: &Spinning| points(&set_of(head, &mounting), frame);
+        let expect = |change: fn(&mut Spinning), words: &str| {
+            trial.expect_why(&of(&other(change)), Fields::None, frame, words);
+        };
+        expect(|head| head.azimuth_step_deg = 3.0, "turns the other way: it turns to the right, clockwise");
+        expect(|head| head.azimuth_start_deg = -65.0, "begins 90 degrees to the right");
+        expect(|head| head.azimuth_start_deg = 25.75, "begins 0.75 degrees to the left");
+        expect(|head| head.azimuth_start_deg = 28.0, "one azimuth step late");
+        expect(
+            |head| head.channels.iter_mut().for_each(|one| one.vertical_m = 0.0),
+            "offsets of the emitters are left out",
+        );
+    }
+    // A head that fires all at once: the sensor stands still, so that its times tell nothing else.
+    let mounting = still();
+    let trial = Trial::new(&head(), &mounting);
+    let at_once = other(|head| head.channels.iter_mut().for_each(|one| one.firing_s = 0.0));
+    trial.expect_why(
+        &points(&set_of(&at_once, &mounting), CloudFrame::Mesh),
+        Fields::None,
+        CloudFrame::Mesh,
+        "stands still during a firing",
+    );
+}
+
+#[test]
+fn poses_of_other_times_are_told() {
+    let mounting = bend();
+    let trial = Trial::new(&head(), &mounting);
+    let asked = head().rays("rays").expect("rays");
+    let times = asked.times.clone().expect("times");
+    let at = |time: f64| mounting.at(time).expect("a pose");
+    let with = |pose: &dyn Fn(usize) -> Pose| {
+        let set = fired(&trial.set, |index, _| {
+            let (pose, ray) = (pose(index), asked.rays[index]);
+            CastRay { origin: pose * ray.origin, direction: pose.rotate(ray.direction), ..ray }
+        });
+        let placed = points(&set, CloudFrame::Mesh);
+        let sensor: Vec<Point> = placed
+            .iter()
+            .enumerate()
+            .map(|(k, one)| Point { place: pose(k).inverse() * one.place, ..*one })
+            .collect();
+        [(placed, CloudFrame::Mesh), (sensor, CloudFrame::Sensor)]
+    };
+    for (points, frame) in with(&|_| at(0.0)) {
+        trial.expect_why(&points, Fields::None, frame, "the pose of the scan's start is taken for all rays");
+    }
+    for (points, frame) in with(&|index| at(times[index] + 0.005)) {
+        trial.expect_why(&points, Fields::None, frame, "poses are those of 0.005 s later");
+    }
+    for (points, frame) in with(&|index| at(libm::floor(times[index] / 0.025) * 0.025)) {
+        trial.expect_why(&points, Fields::None, frame, "poses are held until the next one");
+    }
+}
+
+#[test]
+fn lengths_that_are_no_ranges_are_told() {
+    let trial = Trial::new(&head(), &still());
+    let sensor = CloudFrame::Sensor;
+    let right = points(&trial.set, sensor);
+    let asked = head().rays("rays").expect("rays").rays;
+    let with = |length: &dyn Fn(f64, DVec3) -> f64| -> Vec<Point> {
+        let along = |(one, ray): (&Point, &CastRay)| Point {
+            place: ray.origin + ray.direction * length(one.range, ray.direction),
+            ..*one
+        };
+        right.iter().zip(&asked).map(along).collect()
+    };
+    let level = |direction: DVec3| libm::hypot(direction.x, direction.y);
+    trial.expect_why(
+        &with(&|range, d| range * level(d)),
+        Fields::None,
+        sensor,
+        "points stand at the level distance",
+    );
+    trial.expect_why(
+        &with(&|range, d| range / level(d)),
+        Fields::None,
+        sensor,
+        "range is taken for the level distance",
+    );
+    trial.expect_why(&with(&|range, _| range + 0.03), Fields::None, sensor, "ranges are 0.03 too long");
+    trial.expect_why(
+        &with(&|range, _| range * 1.002),
+        Fields::None,
+        sensor,
+        "ranges are 1.002 times what they are",
+    );
+    let in_field: Vec<Point> = right
+        .iter()
+        .zip(&asked)
+        .map(|(one, ray)| Point { range: one.range * level(ray.direction), ..*one })
+        .collect();
+    trial.expect_why(&in_field, Fields::Range, sensor, "the field range holds the level distance");
+}
+
+#[test]
+fn depth_in_place_of_range_is_told_of_a_grid() {
+    use raypencil_scene::pattern::{Grid, Spacing};
+    let grid = Grid {
+        columns: 32,
+        rows: 24,
+        width_deg: 70.0,
+        height_deg: 50.0,
+        spacing: Spacing::Tangent,
+        min_range_m: 0.0,
+        max_range_m: f64::INFINITY,
+    };
+    let mounting = still();
+    let rays = mounting.place(grid.rays("grid").expect("rays"), "grid").expect("a pose");
+    let set = NamedRaySet::new("grid", rays, Sides::Both).expect("a set");
+    let folder = tempfile::tempdir().expect("a folder");
+    let source = CastSource::default();
+    write_scan_pack(&folder.path().join("pack"), (&room(), &set, Sides::Both), &source, &Silent)
+        .expect("a pack");
+    let trial = Trial { folder, set };
+    let answers = cast(&room(), trial.set.set.rays(), Sides::Both, Questions::default(), &Silent);
+    let pattern = grid.rays("grid").expect("rays").rays;
+    let points = |length: &dyn Fn(f64, f64) -> f64| -> Vec<Point> {
+        let one = |(read, ray): (&raypencil_scene::Reading<raypencil_cast::FirstHit>, &CastRay)| {
+            let range = read.hit().map_or(f64::NAN, |hit| hit.range);
+            let place = ray.direction * length(range, ray.direction.x);
+            Point { place, ring: 0, time: 0.0, range }
+        };
+        answers.first.iter().zip(&pattern).map(one).collect()
+    };
+    assert!(trial.judge(&points(&|range, _| range), Fields::None, CloudFrame::Sensor).passes());
+    trial.expect_why(
+        &points(&|range, cos| range * cos),
+        Fields::None,
+        CloudFrame::Sensor,
+        "points stand at the depth",
+    );
+}
+
+#[test]
+fn missing_invented_and_stray_points_are_counted() {
+    let trial = Trial::new(&head(), &still());
+    let right = points(&trial.set, CloudFrame::Mesh);
+    let hit = right.iter().position(|one| one.place.is_finite()).expect("a hit");
+    let miss = right.iter().position(|one| one.place.is_nan()).expect("a miss");
+    let mut changed = right.clone();
+    changed[hit].place = DVec3::NAN;
+    changed[miss].place = DVec3::new(3.0, -20.0, 1.0);
+    let checked = trial.judge(&changed, Fields::Keys, CloudFrame::Mesh);
+    assert_eq!(checked.comparison.counts().wrong, 2);
+    let text = checked.document().screen();
+    assert!(
+        text.contains("1 ray without a point that should have one; 1 point where nothing is measured"),
+        "{text}"
+    );
+    // A point twice, and one of a channel that is none: right rays, and two points too many.
+    let mut more: Vec<Point> = right.iter().copied().filter(|one| one.place.is_finite()).collect();
+    let first = more[0];
+    more.extend([first, Point { ring: 77, ..first }]);
+    let checked = trial.judge_dense(&more, Fields::Keys, CloudFrame::Mesh);
+    assert_eq!(checked.comparison.counts().wrong, 0);
+    assert!(!checked.passes());
+    assert_eq!(checked.cloud.as_ref().expect("a cloud").strays.len(), 2);
+    assert!(checked.document().screen().contains("2 points of no ray"), "{}", checked.document().screen());
+    // Zeros for misses.
+    let zeros: Vec<Point> = right
+        .iter()
+        .map(|one| if one.place.is_nan() { Point { place: DVec3::ZERO, ..*one } } else { *one })
+        .collect();
+    trial.expect_why(&zeros, Fields::None, CloudFrame::Mesh, "declare --miss 0");
+    let file = trial.write(&zeros, Fields::None, [16, 120]);
+    assert!(
+        trial
+            .check(&file, CandidateConventions { miss: Some(0.0), ..Default::default() })
+            .expect("a check")
+            .passes()
+    );
+}
+
+#[test]
+fn points_that_no_rule_lays_on_rays_are_refused_with_the_remedy() {
+    let trial = Trial::new(&head(), &bend());
+    let dense: Vec<Point> =
+        points(&trial.set, CloudFrame::Mesh).into_iter().filter(|one| one.place.is_finite()).collect();
+    let file = trial.write(&dense, Fields::None, [dense.len(), 1]);
+    let message = trial.check(&file, CandidateConventions::default()).expect_err("a refusal");
+    assert!(
+        message.contains("belong to no ray that is known")
+            && message.contains("`ring` (or `channel`) and `time`"),
+        "{message}"
+    );
+}
