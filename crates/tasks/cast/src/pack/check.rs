@@ -112,7 +112,7 @@ pub fn check_ray_pack(
     let answers = cast_with(&exact, &rays.rays, sides, Questions::default(), progress);
     let name = candidate.file_name().map_or_else(|| ".".into(), |name| name.to_string_lossy().into_owned());
     let cloud = case.map(|case| case.facts);
-    let of_keys = cloud.as_ref().and_then(|cloud| cloud.keys_why);
+    let of_keys = cloud.as_ref().and_then(|cloud| cloud.keys_why.clone());
     let why = match why {
         Some(explanation) => explanation.map(|explanation| explanation.sentence()),
         None => of_keys.map(|words| format!("100.0000 % agree if {words}")),

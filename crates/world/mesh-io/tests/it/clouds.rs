@@ -136,3 +136,40 @@ fn what_is_no_cloud_is_refused_in_one_sentence() {
     huge.extend([[9, 0, 0, 0], [12, 0, 0, 0]].concat());
     assert!(read(&huge).unwrap_err().contains("9 compressed bytes (is the file cut off?)"));
 }
+
+#[test]
+fn no_cut_and_no_changed_byte_breaks_the_reader() {
+    let mut binary = header("binary").into_bytes();
+    for point in [0, 1] {
+        fields().iter().for_each(|field| binary.extend(&field[point]));
+    }
+    let mut compressed = header("binary_compressed").into_bytes();
+    // Ten bytes as they are, then copies of what is before them, 68 bytes in all.
+    let packed = [&[9][..], &[0; 10], &[7 << 5, 49, 4]].concat();
+    compressed.extend([(packed.len() as u32).to_le_bytes(), 68_u32.to_le_bytes()].concat());
+    compressed.extend(&packed);
+    let text = header("ascii") + "1.5 -2 0.1 7 7 7 500 -5 0 0 1\nnan 4.00 3e0 7 7 7 65535 6 0 0 2\n";
+    for good in [binary, compressed, text.into_bytes()] {
+        let whole = read(&good);
+        assert!(whole.is_ok(), "{whole:?}");
+        for at in 0..good.len() {
+            // What is read has a number of each field for each point.
+            let check = |bytes: &[u8]| {
+                if let Ok(cloud) = read(bytes) {
+                    let points = cloud.width * cloud.height;
+                    assert!(cloud.columns.iter().all(|column| column.values.len() as u64 == points));
+                    cloud
+                        .columns
+                        .iter()
+                        .for_each(|column| assert!((0..cloud.len()).all(|k| column.error(k) >= 0.0)));
+                }
+            };
+            check(&good[..at]);
+            for byte in [0, b'\n', b' ', b'9', b'-', 0x80, 0xff, good[at] ^ 1] {
+                let mut changed = good.clone();
+                changed[at] = byte;
+                check(&changed);
+            }
+        }
+    }
+}

@@ -62,8 +62,13 @@ impl Asked<'_> {
         }
     }
 
-    /// By channel and time, where the file has both and they tell rays apart.
-    pub(super) fn by_keys(&self, cloud: &Cloud, is_point: &[bool], ring: Ring) -> Option<Assigned> {
+    /// By channel and time, where the file has both and they tell rays apart. `late_s` is what its times are too late.
+    pub(super) fn by_keys(
+        &self,
+        cloud: &Cloud,
+        is_point: &[bool],
+        (ring, late_s): (Ring, f64),
+    ) -> Option<Assigned> {
         let scan = self.scan?;
         let times = scan.times.as_ref()?;
         let channels = self.channels();
@@ -106,7 +111,7 @@ impl Asked<'_> {
         let ray = |point: usize| {
             let key = of_channel.values[point];
             let channel = *channel_of.get((key.fract() == 0.0 && key >= 0.0).then_some(key as usize)?)?;
-            let time = seconds(of_time.values[point]);
+            let time = seconds(of_time.values[point]) - late_s;
             let list = &fired[channel];
             let after = list.partition_point(|(other, _)| *other < time);
             let near = [after.checked_sub(1), Some(after)].into_iter().flatten().filter_map(|k| list.get(k));
@@ -116,6 +121,20 @@ impl Asked<'_> {
             ((nearest.0 - time).abs() <= gap / 4.0).then_some(nearest.1)
         };
         Some(self.collected(is_point, ray, by))
+    }
+
+    /// How much too late the times of a cloud may be, seconds: those by which its first point has the time of the first ray, or its
+    /// last that of the last.
+    pub(super) fn lateness(&self, cloud: &Cloud, is_point: &[bool]) -> Vec<f64> {
+        let Some(times) = self.scan.and_then(|scan| scan.times.as_ref()) else { return Vec::new() };
+        let Some((column, seconds)) = seconds(cloud, times) else { return Vec::new() };
+        let stated =
+            || column.values.iter().zip(is_point).filter(|(_, is)| **is).map(|(time, _)| seconds(*time));
+        let least = |times: &mut dyn Iterator<Item = f64>| times.fold(f64::INFINITY, f64::min);
+        let most = |times: &mut dyn Iterator<Item = f64>| times.fold(f64::NEG_INFINITY, f64::max);
+        let asked = || times.iter().copied();
+        let found = [least(&mut stated()) - least(&mut asked()), most(&mut stated()) - most(&mut asked())];
+        found.into_iter().filter(|late| late.is_finite() && *late != 0.0).collect()
     }
 
     /// By order: one point for each ray.

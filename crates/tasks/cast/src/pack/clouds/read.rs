@@ -8,6 +8,7 @@ use raypencil_mesh_io::{Cloud, CloudStorage, read_cloud};
 use raypencil_scene::CastRay;
 
 use super::assign::{Asked, Assigned, BY_RING, Ring, is_key, unclear};
+use super::fit::rounded;
 use crate::cloud::CloudFrame;
 use crate::comparison::Stated;
 use crate::pack::candidate::CandidateConventions;
@@ -27,10 +28,10 @@ pub struct CloudFacts {
     pub strays: Vec<usize>,
     /// Whether the field `range` was judged too.
     pub has_range: bool,
-    /// Number of points whose fields of channel and time are those of another ray than the one that their order gives.
+    /// Number of points whose fields of channel and time are not those of their ray, as their order or another time tells it.
     pub wrong_keys: usize,
     /// What explains them.
-    pub(in crate::pack) keys_why: Option<&'static str>,
+    pub(in crate::pack) keys_why: Option<String>,
 }
 
 /// A cloud on the rays of a pack.
@@ -96,10 +97,19 @@ pub(in crate::pack) fn read_cloud_of<'a>(
     let real = is_point.iter().filter(|&&is_point| is_point).count();
     let asked = Asked { shape, count: rays.len(), scan };
     let found = assigned(&asked, &cloud, (&points, &is_point), rays, frame);
-    let Some(found) = found.filter(|found| found.is_clear(real)) else {
-        let strays =
-            assigned(&asked, &cloud, (&points, &is_point), rays, frame).map_or(real, |of| of.strays.len());
-        return Err(fault(unclear(strays, real)));
+    let strays = found.as_ref().map_or(real, |found| found.strays.len());
+    let lateness = asked.lateness(&cloud, &is_point);
+    // Times with another zero still tell the rays.
+    let shifted = |late: f64| {
+        let found = asked.by_keys(&cloud, &is_point, (Ring::FromBelow, late));
+        found.filter(|found| found.is_clear(real)).map(|found| (found, late))
+    };
+    let (found, late) = match found.filter(|found| found.is_clear(real)) {
+        Some(found) => (found, 0.0),
+        None => {
+            let found = lateness.iter().find_map(|&late| shifted(late));
+            found.ok_or_else(|| fault(unclear(strays, real)))?
+        }
     };
     let part_of = |assigned: &Assigned| {
         let error = |k: usize| DVec3::new(x.error(k), y.error(k), z.error(k)).length();
@@ -123,7 +133,7 @@ pub(in crate::pack) fn read_cloud_of<'a>(
     };
     if found.by == BY_RING {
         for (words, ring) in RINGS {
-            add(words, asked.by_keys(&cloud, &is_point, ring));
+            add(words, asked.by_keys(&cloud, &is_point, (ring, late)));
         }
     }
     if !found.by.starts_with("by the order") {
@@ -148,15 +158,25 @@ pub(in crate::pack) fn read_cloud_of<'a>(
         };
         found.point_of.iter().map(of).unzip()
     });
-    // Keys that do not tell the rays may be wrong themselves.
+    // Keys that do not tell the rays are wrong themselves.
     let unlike = |keys: &Assigned| {
         let pairs = found.point_of.iter().zip(&keys.point_of);
         pairs.filter(|(found, of_keys)| found.is_some_and(|k| is_point[k]) && found != of_keys).count()
     };
-    let keys = asked.by_keys(&cloud, &is_point, Ring::FromBelow).filter(|keys| keys.by != found.by);
+    let keys = asked.by_keys(&cloud, &is_point, (Ring::FromBelow, 0.0));
     let wrong_keys = keys.as_ref().map_or(0, unlike);
-    let explains = |ring: Ring| asked.by_keys(&cloud, &is_point, ring).is_some_and(|keys| unlike(&keys) == 0);
-    let keys_why = RINGS.iter().find(|(_, ring)| wrong_keys > 0 && explains(*ring)).map(|(words, _)| *words);
+    let explains = |ring: Ring, late: f64| {
+        asked.by_keys(&cloud, &is_point, (ring, late)).is_some_and(|keys| unlike(&keys) == 0)
+    };
+    let of_ring =
+        || RINGS.iter().find(|(_, ring)| explains(*ring, 0.0)).map(|(words, _)| (*words).to_string());
+    let of_time = || {
+        let late =
+            lateness.iter().flat_map(|&late| rounded(late)).find(|&late| explains(Ring::FromBelow, late))?;
+        let way = if late > 0.0 { "late" } else { "early" };
+        Some(format!("the times of the points are {} s too {way}", late.abs()))
+    };
+    let keys_why = if wrong_keys > 0 { of_ring().or_else(of_time) } else { None };
     let facts = CloudFacts {
         wrong_keys,
         keys_why,
@@ -189,7 +209,7 @@ fn assigned(
 ) -> Option<Assigned> {
     let real = is_point.iter().filter(|&&is_point| is_point).count();
     let clear = |assigned: &Assigned| assigned.is_clear(real);
-    let by_keys = asked.by_keys(cloud, is_point, Ring::FromBelow).filter(clear);
+    let by_keys = asked.by_keys(cloud, is_point, (Ring::FromBelow, 0.0)).filter(clear);
     let by_order = || asked.by_order(cloud, is_point, asked.has_rows_of_channels(cloud));
     by_keys.or_else(by_order).or_else(|| {
         // A direction tells rays apart in the sensor's own frame. Of one that moves, points in another frame have lost it.
