@@ -4,6 +4,7 @@
 /// Types by package and name, and their fields, in the order in which they are encoded.
 const TYPES: &[(&str, &str)] = &[
     ("builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"),
+    ("rosgraph_msgs/Clock", "builtin_interfaces/Time clock\n"),
     ("std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"),
     (
         "sensor_msgs/Image",

@@ -40,9 +40,9 @@ mod metadata;
 
 pub use bag::{BagWriter, Topic};
 pub use messages::{
-    Bytes, CameraInfo, Header, Image, MapMetaData, Message, OccupancyGrid, Odometry, Point, PointCloud2,
-    PointField, Pose, PoseWithCovariance, Quaternion, RegionOfInterest, Stamp, TfMessage, Transform,
-    TransformStamped, Twist, TwistWithCovariance, Vector3,
+    Bytes, CameraInfo, Clock, Header, Image, MapMetaData, Message, OccupancyGrid, Odometry, Point,
+    PointCloud2, PointField, Pose, PoseWithCovariance, Quaternion, RegionOfInterest, Stamp, TfMessage,
+    Transform, TransformStamped, Twist, TwistWithCovariance, Vector3,
 };
 
 // The tests by public items are in the program of the unit tests: one executable for the crate.

@@ -51,6 +51,17 @@ impl Stamp {
     }
 }
 
+/// `rosgraph_msgs/msg/Clock`: the time that a player tells, for programs that follow simulated time.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Clock {
+    /// The time now.
+    pub clock: Stamp,
+}
+
+impl Message for Clock {
+    const TYPE: &'static str = "rosgraph_msgs/msg/Clock";
+}
+
 /// `std_msgs/msg/Header`.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct Header {
@@ -143,10 +154,18 @@ pub struct PointField {
 }
 
 impl PointField {
+    /// Whole number of a byte.
+    pub const UINT8: u8 = 2;
+    /// Whole number of two bytes.
+    pub const UINT16: u8 = 4;
     /// Signed whole number of four bytes.
     pub const INT32: u8 = 5;
+    /// Whole number of four bytes.
+    pub const UINT32: u8 = 6;
     /// Real number of four bytes.
     pub const FLOAT32: u8 = 7;
+    /// Real number of eight bytes.
+    pub const FLOAT64: u8 = 8;
 }
 
 /// `sensor_msgs/msg/PointCloud2`.

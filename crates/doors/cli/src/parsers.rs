@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use raypencil::campaign::{MAX_SHARDS, PartName, Shard};
-use raypencil::cast::{CloudFrame, rays_from_bytes};
+use raypencil::cast::{BagFields, CloudFrame, rays_from_bytes};
 use raypencil::drive::RecordContents;
 use raypencil::harness::MapFormat;
 use raypencil::io::{DeclaredChannel, HeightUnit, LengthUnit, NoData, SceneIoError, Setting, UpAxis};
@@ -51,6 +51,27 @@ pub(crate) fn up_axis() -> impl TypedValueParser<Value = UpAxis> {
     one_of([
         (UpAxis::Y.word(), "(x, y, z) of the file is (x, -z, y) of the terrain", UpAxis::Y),
         (UpAxis::Z.word(), "The axes of the file are those of the terrain", UpAxis::Z),
+    ])
+}
+
+/// `--bag`.
+pub(crate) fn bag_fields() -> impl TypedValueParser<Value = BagFields> {
+    one_of([
+        (
+            BagFields::Velodyne.option(),
+            "x y z intensity ring time, of velodyne_pointcloud",
+            BagFields::Velodyne,
+        ),
+        (
+            BagFields::Ouster.option(),
+            "x y z intensity t reflectivity ring ambient range, of ouster_ros",
+            BagFields::Ouster,
+        ),
+        (
+            BagFields::Livox.option(),
+            "x y z intensity tag line timestamp, of livox_ros_driver2; always dense",
+            BagFields::Livox,
+        ),
     ])
 }
 

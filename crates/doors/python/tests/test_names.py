@@ -62,6 +62,8 @@ ONLY_COMMAND = {
     "cast --all": "`query`: `all` is a function of Python",
     "cast --allow-empty": "is about the exit code",
     "cast --any": "`query`: `any` is a function of Python",
+    "cast --bag": "arrays are returned",
+    "cast --bag-dense": "arrays are returned",
     "cast --output": "arrays are returned",
     "cast --ray": "`origins` and `directions`",
     "cast --scale": "vertices are an array: they can be multiplied",

@@ -7,7 +7,7 @@ use raypencil_files::{FileError, write_atomically};
 use raypencil_scene::pattern::Mounting;
 use raypencil_scene::{NamedRaySet, Pose, Reading};
 
-use crate::answers::Answers;
+use crate::answers::{Answers, FirstHit};
 
 /// Stands for "no face" in a PCD file, whose fields of whole numbers have no NaN.
 const NO_FACE: u32 = u32::MAX;
@@ -156,7 +156,7 @@ pub fn write_pcd(
         for (index, read) in answers.first.iter().enumerate() {
             let (point, intensity, range, face) = match read {
                 Reading::Hit(hit) => {
-                    let intensity = hit.cos_incidence.abs() / (hit.range * hit.range);
+                    let intensity = intensity(hit);
                     (placed(index, hit.point), intensity, hit.range, hit.face.0)
                 }
                 Reading::TooNear => (DVec3::NAN, f64::NAN, f64::NEG_INFINITY, NO_FACE),
@@ -180,8 +180,13 @@ pub fn write_pcd(
     })
 }
 
-fn rings(set: &NamedRaySet) -> Option<Vec<u64>> {
+pub(crate) fn rings(set: &NamedRaySet) -> Option<Vec<u64>> {
     Some(ranks(set.elevations_deg.as_ref()?))
+}
+
+/// The light of a small spot on a diffuse surface: cos(psi) / R^2, relative, without air.
+pub(crate) fn intensity(hit: &FirstHit) -> f64 {
+    hit.cos_incidence.abs() / (hit.range * hit.range)
 }
 
 /// The rank of each channel by its elevation, from below; of equal ones the first is lower.

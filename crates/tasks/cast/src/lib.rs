@@ -6,6 +6,7 @@
 //! answers        what is asked, and the answers of the referee
 //! columns        the values of first hits that are asked for, an array each
 //! cloud          the points that are hit, as PLY and PCD
+//! bag            the same as a bag of ROS 2, with the sensor's poses and the clock
 //! comparison/    another program's first hits against the exact ones
 //! page           the answers as a page that answers when asked
 //! pack/          packs of rays: a mesh, rays, exact answers; the check of a candidate, and what explains its mistakes
@@ -36,6 +37,7 @@
 //! ```
 
 mod answers;
+mod bag;
 mod cloud;
 mod columns;
 mod comparison;
@@ -49,6 +51,7 @@ mod write;
 pub use answers::{
     Answers, FirstHit, GroupAtT, Questions, cast, cast_beside_first, cast_with, traced_beside_first,
 };
+pub use bag::{BagFields, BagForm, write_scan_bag};
 pub use cloud::{CloudFrame, write_pcd, write_ply};
 pub use columns::{Caster, ColumnsPart, FirstColumns, ReadingCounts, Values};
 pub use comparison::{

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use raypencil_rosbag::{
-    BagWriter, CameraInfo, Header, Image, MapMetaData, OccupancyGrid, Odometry, PointCloud2, PointField,
-    Stamp, TfMessage, Topic, Transform, TransformStamped, Vector3,
+    BagWriter, CameraInfo, Clock, Header, Image, MapMetaData, OccupancyGrid, Odometry, PointCloud2,
+    PointField, Stamp, TfMessage, Topic, Transform, TransformStamped, Vector3,
 };
 
 fn at(nanoseconds: u64) -> Stamp {
@@ -113,6 +113,7 @@ fn every_message_is_as_long_as_its_definition_says() {
     writer.write(&Topic::new("/grid"), at(1), &grid).unwrap();
     writer.write(&Topic::new("/odometry"), at(1), &Odometry { header, ..Odometry::default() }).unwrap();
     writer.write(&Topic::new("/tf"), at(1), &TfMessage::default()).unwrap();
+    writer.write(&Topic::new("/clock"), at(1), &Clock { clock: at(1) }).unwrap();
     writer.finish().unwrap();
 
     let bytes = std::fs::read(bag.join("all_0.mcap")).unwrap();
@@ -130,7 +131,7 @@ fn every_message_is_as_long_as_its_definition_says() {
         assert_eq!(place, message.data.len(), "{}", schema.name);
         seen += 1;
     }
-    assert_eq!(seen, 6);
+    assert_eq!(seen, 7);
 }
 
 /// Goes over a type's fields in the bytes of a message, which begin with four bytes that alignment does not count.

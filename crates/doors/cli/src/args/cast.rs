@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use raypencil::CastRay;
+use raypencil::cast::BagFields;
 use raypencil::io::{Setting, UpAxis};
 
-use crate::parsers::{number, ray, setting, up_axis};
+use crate::parsers::{bag_fields, number, ray, setting, up_axis};
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
@@ -15,7 +16,9 @@ use crate::parsers::{number, ray, setting, up_axis};
   # One ray, all its hits in exact order.
   raypencil cast data/rays/cube.obj --ray 0.1,0.2,5,0,0,-1 --all
   # A LiDAR's pattern, and whether a renderer answers it rightly.
-  raypencil cast data/rays/cube.obj data/rays/vlp16.toml --with tracer")]
+  raypencil cast data/rays/cube.obj data/rays/vlp16.toml --with tracer
+  # The same as a bag of ROS 2, as the driver of the sensor gives it.
+  raypencil cast data/rays/cube.obj data/rays/vlp16.toml --bag velodyne -o out/vlp16")]
 pub(crate) struct Cast {
     /// A mesh: .glb, .gltf, .stl, .obj or .ply, or a folder with vertices.npy and faces.npy. Or a scene file (.toml) with
     /// tables [[rays]]: its terrain, and its own sets of rays unless others are given; its camera and beams are left out.
@@ -69,6 +72,15 @@ pub(crate) struct Cast {
     /// Compare a renderer's first hits with the exact ones, ray by ray. Exit code 1: a ray is wrong.
     #[arg(long, value_name = "RENDERER", value_parser = ["tracer"])]
     pub(crate) with: Option<String>,
+
+    /// Write the cloud of each set as a bag of ROS 2 too, DIR/rosbag: PointCloud2 in the sensor's frame with the fields of a driver,
+    /// poses (TF) and clock.
+    #[arg(long, value_name = "FIELDS", value_parser = bag_fields(), requires = "output")]
+    pub(crate) bag: Option<BagFields>,
+
+    /// With --bag: leave out rays without a point. Without it the cloud is organised: rows and columns, NaN where nothing is hit.
+    #[arg(long, requires = "bag")]
+    pub(crate) bag_dense: bool,
 
     /// Folder for the answers: NPY arrays of the rays' own shape, and summary.json. For sets of rays also point clouds and
     /// pictures; several sets have a folder each.

@@ -6,8 +6,8 @@ mod ray_command;
 use std::path::{Path, PathBuf};
 
 use raypencil::cast::{
-    Answers, CastPage, CastSource, Questions, RayArray, cast as answer, cast_warnings, counts_text, ray_json,
-    ray_text, rays_from_bytes, write_answers, write_cast_page, write_set,
+    Answers, BagForm, CastPage, CastSource, Questions, RayArray, cast as answer, cast_warnings, counts_text,
+    ray_json, ray_text, rays_from_bytes, write_answers, write_cast_page, write_scan_bag, write_set,
 };
 use raypencil::io::{
     FileError, FileFacts, FileFrame, FileUnits, Limits, LoadedRaySets, OutputFolder, PolygonFacts, RayScene,
@@ -56,6 +56,10 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
         // One after the other.
         Rays::Sets(sets) => sets.iter().map(|set| set.set.rays().len()).max().unwrap_or(0),
     };
+    if command.bag.is_some() && matches!(rays, Rays::Array(_)) {
+        let text = "--bag is for sets of rays, which have times and poses; expected RAYS that end in .toml, or a scene";
+        return Err(Trouble::Usage(text.into()));
+    }
     memory::ask_cast(count, mesh.faces().len())?;
     let folder = command.output.as_deref();
     let output = match folder {
@@ -113,6 +117,10 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
                 if let Some(folder) = &folder {
                     let of_set = (set.set.rays(), set.shape.as_slice(), Some(set));
                     write_page(folder, command, &source, of_set, sides, &answers, &compared)?;
+                    if let Some(fields) = command.bag {
+                        let form = BagForm { fields, is_dense: command.bag_dense };
+                        write_scan_bag(&folder.join("rosbag"), &answers, set, form)?;
+                    }
                 }
                 let written = folder.map(|folder| write_set(&folder, &answers, (mesh, set, sides), &source));
                 let summary = written.transpose()?;

@@ -1,5 +1,6 @@
 //! The tests of this crate by its public items, one program together with its unit tests.
 
+mod bags;
 mod bounds;
 mod cloud;
 mod clouds_of_others;

@@ -1,0 +1,313 @@
+//! The points that are hit as a bag of ROS 2: a `PointCloud2` as a driver gives it, the sensor's poses, and the clock.
+
+use std::path::Path;
+
+use glam::DVec3;
+use raypencil_files::{Fault, FileError};
+use raypencil_rosbag::{
+    BagWriter, Clock, Header, PointCloud2, PointField, Quaternion, Stamp, TfMessage, Topic, Transform,
+    TransformStamped, Vector3,
+};
+use raypencil_scene::pattern::Mounting;
+use raypencil_scene::{NamedRaySet, Pose};
+
+use crate::answers::{Answers, FirstHit};
+use crate::cloud::{intensity, rings};
+
+/// The frame of the mesh, and that of the sensor (REP-105 has `map`).
+const MAP: &str = "map";
+const SENSOR: &str = "lidar";
+
+/// Earliest time of a message, seconds: the time 0 means "no time" in ROS.
+const FIRST_S: f64 = 1.0;
+
+/// Whose fields the points have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BagFields {
+    /// `x y z intensity` f32, `ring` u16 from below, `time` f32 in seconds after the first ray; 22 bytes, without gaps. (ROS driver of
+    /// Velodyne, `velodyne_pointcloud`, `pointcloudXYZIRT`)
+    Velodyne,
+    /// `x y z intensity` f32, `t` u32 in nanoseconds after the first ray, `reflectivity ring ambient` u16, `range` u32 in
+    /// thousandths; 48 bytes, aligned as PCL does. `ring` counts from above. (ROS driver of Ouster, `ouster_ros`, `os_point.h`)
+    Ouster,
+    /// `x y z intensity` f32, `tag line` u8, `timestamp` f64 in nanoseconds; 26 bytes, without gaps. (`livox_ros_driver2`,
+    /// `InitPointcloud2MsgHeader`, with `xfer_format` 0)
+    Livox,
+}
+
+impl BagFields {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Velodyne, Self::Ouster, Self::Livox];
+
+    /// The word of options.
+    pub fn option(self) -> &'static str {
+        match self {
+            Self::Velodyne => "velodyne",
+            Self::Ouster => "ouster",
+            Self::Livox => "livox",
+        }
+    }
+
+    /// Name, place and type of each field, and the bytes of a point.
+    fn layout(self) -> (&'static [(&'static str, u32, u8)], u32) {
+        const REAL: u8 = PointField::FLOAT32;
+        match self {
+            Self::Velodyne => (
+                &[
+                    ("x", 0, REAL),
+                    ("y", 4, REAL),
+                    ("z", 8, REAL),
+                    ("intensity", 12, REAL),
+                    ("ring", 16, PointField::UINT16),
+                    ("time", 18, REAL),
+                ],
+                22,
+            ),
+            // Four reals for the place, of which the last is filling; the end is filled up to a multiple of 16 bytes.
+            Self::Ouster => (
+                &[
+                    ("x", 0, REAL),
+                    ("y", 4, REAL),
+                    ("z", 8, REAL),
+                    ("intensity", 16, REAL),
+                    ("t", 20, PointField::UINT32),
+                    ("reflectivity", 24, PointField::UINT16),
+                    ("ring", 26, PointField::UINT16),
+                    ("ambient", 28, PointField::UINT16),
+                    ("range", 32, PointField::UINT32),
+                ],
+                48,
+            ),
+            Self::Livox => (
+                &[
+                    ("x", 0, REAL),
+                    ("y", 4, REAL),
+                    ("z", 8, REAL),
+                    ("intensity", 12, REAL),
+                    ("tag", 16, PointField::UINT8),
+                    ("line", 17, PointField::UINT8),
+                    ("timestamp", 18, PointField::FLOAT64),
+                ],
+                26,
+            ),
+        }
+    }
+}
+
+/// What the points of a bag are like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BagForm {
+    /// Their fields.
+    pub fields: BagFields,
+    /// Leave out rays without a point, and with them the order. Clouds of Livox have no order in any case.
+    pub is_dense: bool,
+}
+
+/// Where each ray of a set belongs.
+struct Places {
+    rows: u64,
+    columns: u64,
+    /// Cell of each ray, row by row.
+    cells: Vec<usize>,
+    /// Ring of each ray.
+    rings: Vec<u64>,
+}
+
+impl Places {
+    /// Velodyne: a row for each firing sequence, its rings from below. Ouster: a row for each channel, from above, and a column
+    /// for each sequence. A pattern without elevations keeps its own rows and columns.
+    fn of(set: &NamedRaySet, fields: BagFields) -> Self {
+        let count = set.set.rays().len() as u64;
+        let columns = set.shape.last().copied().unwrap_or(1);
+        let rows = count.checked_div(columns).unwrap_or(0);
+        let by_channel = rings(set).filter(|_| set.shape.len() == 2);
+        let Some(ranks) = by_channel else {
+            let ring =
+                |index: u64| if fields == BagFields::Ouster { index / columns } else { index % columns };
+            return Self {
+                rows,
+                columns,
+                cells: (0..count as usize).collect(),
+                rings: (0..count).map(ring).collect(),
+            };
+        };
+        let ring = |channel: u64| match fields {
+            BagFields::Ouster => columns - 1 - ranks[channel as usize],
+            BagFields::Velodyne | BagFields::Livox => ranks[channel as usize],
+        };
+        let cell = |index: u64| match fields {
+            BagFields::Ouster => ring(index % columns) * rows + index / columns,
+            BagFields::Velodyne | BagFields::Livox => index / columns * columns + ring(index % columns),
+        };
+        let (height, width) = if fields == BagFields::Ouster { (columns, rows) } else { (rows, columns) };
+        Self {
+            rows: height,
+            columns: width,
+            cells: (0..count).map(|index| cell(index) as usize).collect(),
+            rings: (0..count).map(|index| ring(index % columns)).collect(),
+        }
+    }
+}
+
+/// Writes a bag of ROS 2 (MCAP): `/points`, a `PointCloud2` of all rays in the sensor's own frame at the time of each, `lidar`; its poses
+/// in `map`, the frame of the mesh, as `/tf`, or `/tf_static` for one that stands still; and `/clock`.
+///
+/// Times are those of the set, or later by as much as brings the first of them to 1 s. The cloud's header has the time of the
+/// first ray, and it is recorded at that of the last. Without order the points are in the order of the rays; with it, cells
+/// without a point have NaN, and `is_dense` is false.
+///
+/// # Errors
+/// The file cannot be written, or the points take more than 4 GiB; the message names the folder.
+pub fn write_scan_bag(
+    folder: &Path,
+    answers: &Answers,
+    set: &NamedRaySet,
+    form: BagForm,
+) -> Result<(), FileError> {
+    let (_, point_bytes) = form.fields.layout();
+    let count = answers.first.len() as u64;
+    if count * u64::from(point_bytes) > u64::from(u32::MAX) {
+        let found = format!("{count} points of {point_bytes} bytes");
+        return Err(FileError::Cloud(Fault::new("points", found, "at most 4 GiB").in_file(folder)));
+    }
+    let time_of = |index: usize| set.times.as_ref().map_or(0.0, |times| times[index]);
+    let times = || (0..answers.first.len()).map(time_of);
+    let (first, last) = (times().reduce(f64::min).unwrap_or(0.0), times().reduce(f64::max).unwrap_or(0.0));
+    let begin = match &set.mounting {
+        Mounting::Fixed(_) => first,
+        Mounting::Moving(poses) => first.min(poses.span_s()[0]),
+    };
+    let later = (FIRST_S - begin).max(0.0);
+    let at = |seconds: f64| Stamp::from_nanoseconds(((seconds + later) * 1e9).round() as u64);
+
+    let mut bag = BagWriter::create(folder)?;
+    // Each time at which something is told, in their order; at a time the clock first, and the cloud last.
+    let mut ticks = vec![first, last];
+    if let Mounting::Moving(poses) = &set.mounting {
+        ticks.extend(poses.poses().iter().map(|pose| pose.time_s));
+    }
+    ticks.sort_by(f64::total_cmp);
+    ticks.dedup();
+    if let Mounting::Fixed(pose) = &set.mounting {
+        let transforms = vec![transform(at(first), pose)];
+        bag.write(&Topic::latched("/tf_static"), at(first), &TfMessage { transforms })?;
+    }
+    for tick in ticks {
+        bag.write(&Topic::new("/clock"), at(tick), &Clock { clock: at(tick) })?;
+        if let Mounting::Moving(poses) = &set.mounting
+            && let Some(pose) = poses.at(tick)
+        {
+            let transforms = vec![transform(at(tick), &pose)];
+            bag.write(&Topic::new("/tf"), at(tick), &TfMessage { transforms })?;
+        }
+        if tick == last {
+            let cloud = cloud(answers, set, form, (at(first), &|index| time_of(index) - first));
+            bag.write(&Topic::new("/points"), at(tick), &cloud)?;
+        }
+    }
+    bag.finish()
+}
+
+fn transform(stamp: Stamp, pose: &Pose) -> TransformStamped {
+    let rotation = pose.rotation.normalize();
+    TransformStamped {
+        header: Header { stamp, frame_id: MAP.into() },
+        child_frame_id: SENSOR.into(),
+        transform: Transform {
+            translation: Vector3 { x: pose.position.x, y: pose.position.y, z: pose.position.z },
+            rotation: Quaternion { x: rotation.x, y: rotation.y, z: rotation.z, w: rotation.w },
+        },
+    }
+}
+
+fn cloud(
+    answers: &Answers,
+    set: &NamedRaySet,
+    form: BagForm,
+    (stamp, after): (Stamp, &dyn Fn(usize) -> f64),
+) -> PointCloud2 {
+    let BagForm { fields, is_dense } = form;
+    let (layout, point_step) = fields.layout();
+    let step = point_step as usize;
+    let places = Places::of(set, fields);
+    let is_dense = is_dense || fields == BagFields::Livox;
+    let bytes = |index: usize| {
+        let hit = answers.first[index].hit();
+        let time = set.times.as_ref().map_or(0.0, |times| times[index]);
+        let pose = set.mounting.at(time).unwrap_or_else(|| set.mounting.first());
+        let place = hit.map_or(DVec3::NAN, |hit| pose.inverse() * hit.point);
+        point(fields, (place, hit), places.rings[index], after(index), stamp)
+    };
+    let (data, height, width) = match is_dense {
+        true => {
+            let hits = (0..answers.first.len()).filter(|&index| answers.first[index].hit().is_some());
+            let data: Vec<u8> = hits.flat_map(bytes).collect();
+            let points = data.len() / step;
+            (data, 1, points as u32)
+        }
+        false => {
+            let mut data = vec![0; answers.first.len() * step];
+            for (index, &cell) in places.cells.iter().enumerate() {
+                data[cell * step..(cell + 1) * step].copy_from_slice(&bytes(index));
+            }
+            (data, places.rows as u32, places.columns as u32)
+        }
+    };
+    let field = |&(name, offset, datatype): &(&str, u32, u8)| PointField {
+        name: name.into(),
+        offset,
+        datatype,
+        count: 1,
+    };
+    PointCloud2 {
+        header: Header { stamp, frame_id: SENSOR.into() },
+        height,
+        width,
+        fields: layout.iter().map(field).collect(),
+        is_bigendian: false,
+        point_step,
+        row_step: width * point_step,
+        data: data.into(),
+        // The order keeps cells without a point.
+        is_dense: is_dense || answers.first.iter().all(|read| read.hit().is_some()),
+    }
+}
+
+/// The bytes of a point.
+fn point(
+    fields: BagFields,
+    (place, hit): (DVec3, Option<&FirstHit>),
+    ring: u64,
+    after_s: f64,
+    stamp: Stamp,
+) -> Vec<u8> {
+    let mut bytes: Vec<u8> = place.to_array().iter().flat_map(|part| (*part as f32).to_le_bytes()).collect();
+    let light = hit.map_or(f64::NAN, intensity) as f32;
+    let nanoseconds = (after_s * 1e9).round();
+    let word = |number: u64| u16::try_from(number).unwrap_or(u16::MAX).to_le_bytes();
+    match fields {
+        BagFields::Velodyne => {
+            bytes.extend(light.to_le_bytes());
+            bytes.extend(word(ring));
+            bytes.extend((after_s as f32).to_le_bytes());
+        }
+        BagFields::Ouster => {
+            bytes.extend([0; 4]);
+            bytes.extend(light.to_le_bytes());
+            bytes.extend((nanoseconds as u32).to_le_bytes());
+            bytes.extend([0; 2]);
+            bytes.extend(word(ring));
+            // ambient, and two bytes of filling.
+            bytes.extend([0; 4]);
+            let range = hit.map_or(0.0, |hit| (hit.range * 1e3).round());
+            bytes.extend((range as u32).to_le_bytes());
+            bytes.extend([0; 12]);
+        }
+        BagFields::Livox => {
+            bytes.extend(light.to_le_bytes());
+            bytes.extend([0, u8::try_from(ring).unwrap_or(u8::MAX)]);
+            bytes.extend((stamp.nanoseconds() as f64 + nanoseconds).to_le_bytes());
+        }
+    }
+    bytes
+}
