@@ -156,7 +156,7 @@ fn expected(set: &NamedRaySet, answers: &Answers) -> Vec<(DVec3, f64)> {
 fn assert_near(found: DVec3, exact: DVec3) {
     assert!(found.is_nan() == exact.is_nan());
     // Half a unit of single precision below 16 m.
-    assert!(found.is_nan() || (found - exact).abs().max_element() <= 2.0_f64.powi(-21), "{found} {exact}");
+    assert!(found.is_nan() || (found - exact).abs().max_element() <= 1.0 / 2_097_152.0, "{found} {exact}");
 }
 
 #[test]

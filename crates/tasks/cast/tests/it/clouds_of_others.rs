@@ -1,6 +1,6 @@
 //! Point clouds of other simulators against a pack of a scan: honest ones pass, wrong ones are told their mistake.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use raypencil_cast::{
@@ -149,7 +149,7 @@ impl Trial {
         path
     }
 
-    fn check(&self, file: &PathBuf, conventions: CandidateConventions) -> Result<RayPackChecked, String> {
+    fn check(&self, file: &Path, conventions: CandidateConventions) -> Result<RayPackChecked, String> {
         check_ray_pack(&self.folder.path().join("pack"), file, Precision::F64, conventions, &Silent)
             .map_err(|error| error.to_string())
     }

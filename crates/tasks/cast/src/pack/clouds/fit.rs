@@ -62,8 +62,9 @@ mod tests {
     fn a_number_is_found_among_faces_that_change() {
         // Residuals 3 (x - 0.25), and one in five that has another cause.
         let residuals = |x: f64| {
-            let of =
-                |k: usize| if k % 5 == 0 { DVec3::splat(100.0 + x) } else { DVec3::X * (3.0 * (x - 0.25)) };
+            let of = |k: usize| {
+                if k.is_multiple_of(5) { DVec3::splat(100.0 + x) } else { DVec3::X * (3.0 * (x - 0.25)) }
+            };
             (0..50).map(of).collect()
         };
         let found = least(residuals, 1e-3, [-1.0, 1.0]).unwrap();

@@ -26,6 +26,12 @@ const LENGTHS: [(&str, f64); 4] = [
     ("lengths are in feet", 0.3048),
 ];
 
+/// The sequence and channel whose point stands in the place of these, if there is one.
+type OtherPlace<'a> = Box<dyn Fn(usize, usize) -> Option<(usize, usize)> + 'a>;
+
+/// A cosine between a ray, by its index, and what a length is measured along.
+type Cosine<'a> = Box<dyn Fn(usize, &CastRay) -> f64 + 'a>;
+
 /// The mistakes that a cloud may have.
 pub(in crate::pack) fn of_cloud<'a>(
     case: &'a CloudCase<'a>,
@@ -134,7 +140,7 @@ fn set_poses(trial: &mut Trial, pose: impl Fn(usize) -> Option<Pose>) {
 fn of_frames<'a>(list: &mut List<'a>, case: &'a CloudCase<'a>, scan: &'a Scan) {
     let is_here = scan.mounting == Mounting::HERE;
     for frame in CloudFrame::ALL {
-        let is_other = frame != case.frame && !(frame == CloudFrame::SensorAtStart && !scan.is_moving());
+        let is_other = frame != case.frame && (frame != CloudFrame::SensorAtStart || scan.is_moving());
         if is_other && !is_here {
             let words =
                 format!("points are in the frame of {}: declare --frame {}", frame.words(), frame.option());
@@ -191,7 +197,7 @@ fn of_order<'a>(list: &mut List<'a>, case: &'a CloudCase<'a>, scan: &'a Scan) {
     let &[sequences, channels] = case.shape else { return };
     let (sequences, channels) = (sequences as usize, channels as usize);
     // Where channel and sequence of each point are: in the place of others.
-    let mut add = |words: &'static str, from: Box<dyn Fn(usize, usize) -> Option<(usize, usize)> + 'a>| {
+    let mut add = |words: &'static str, from: OtherPlace<'a>| {
         list.add(words, true, move |trial| {
             let Some(cloud) = &mut trial.cloud else { return };
             for (k, &index) in trial.indices.iter().enumerate() {
@@ -311,7 +317,7 @@ fn of_depth<'a>(list: &mut List<'a>, case: &'a CloudCase<'a>, scan: &'a Scan) {
         let along = scan.in_pattern(index, ray).direction;
         libm::hypot(along.x, along.y) / along.length()
     };
-    let cosines: [(&str, Box<dyn Fn(usize, &CastRay) -> f64 + 'a>); 2] =
+    let cosines: [(&str, Cosine<'a>); 2] =
         [("depth along the sensor's x axis", Box::new(axis)), ("level distance", Box::new(level))];
     for (what, cosine) in cosines {
         let cosine = std::rc::Rc::new(cosine);
