@@ -1,6 +1,6 @@
 //! LZF, by which PCD files are compressed. (Marc Lehmann, liblzf; Point Cloud Library, `lzf_decompress`)
 
-use raypencil_files::Fault;
+use raypencil_files::{Fault, MAX_EXPANSION, MAX_INFLATED_BYTES};
 
 /// Longest part that two or three bytes stand for.
 const MAX_COPY: u64 = 264;
@@ -12,6 +12,15 @@ pub(super) fn inflated(packed: &[u8], length: u64) -> Result<Vec<u8>, Fault> {
     if length > (packed.len() as u64).saturating_mul(MAX_COPY) {
         let found = format!("{length} bytes of {} compressed ones", packed.len());
         return Err(Fault::new("size", found, format!("at most {MAX_COPY} of each")));
+    }
+    let most = MAX_INFLATED_BYTES.max((packed.len() as u64).saturating_mul(MAX_EXPANSION));
+    if length > most {
+        let found = format!("{length} bytes of {} compressed ones", packed.len());
+        return Err(Fault::new(
+            "size",
+            found,
+            format!("at most {most}: 512 MiB, or {MAX_EXPANSION} of each"),
+        ));
     }
     let mut bytes = Vec::with_capacity(length as usize);
     let mut at = 0;
@@ -71,6 +80,17 @@ pub(super) fn inflated(packed: &[u8], length: u64) -> Result<Vec<u8>, Fault> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_small_file_asks_for_much_memory() {
+        // Three million bytes could stand for 792 million, and may for 512 MiB.
+        let packed = vec![0xff; 3_000_000];
+        let message = inflated(&packed, 1 << 29 | 1).unwrap_err().to_string();
+        assert!(
+            message.contains("536870913 bytes of 3000000 compressed ones; expected at most 536870912"),
+            "{message}"
+        );
+    }
 
     #[test]
     fn literals_and_copies_come_back() {
