@@ -26,6 +26,7 @@ class Elevation:
         self.noise = setup["known_noise"]
         self.z = setup["start_elevation"]
         self.variance = 0.0
+        self.corrected = 0.0  # sum of all corrections of what the tilt predicted
         self.before = None  # x, y and the slopes of the wheels' plane, one frame ago
 
     def start(self, x, y, rotation):
@@ -104,6 +105,7 @@ class Elevation:
         """Believes both what is believed and z, by their inverse variances."""
         own, other = max(self.variance, MIN_VARIANCE), max(variance, MIN_VARIANCE)
         share = own / (own + other)
+        self.corrected += share * (z - self.z)
         self.z += share * (z - self.z)
         self.variance = share * other
 

@@ -32,6 +32,7 @@ class ElevationMap:
         "x": (float, np.nan), "y": (float, np.nan),  # place of the measurement, which is not the grid point
         "variance": (float, np.nan), "way": (float, np.nan),  # of the elevation, and way driven when measured
         "frame": (float, np.nan),  # in which it was measured
+        "corrected": (float, np.nan),  # sum of the corrections of the vehicle's elevation until then
         # The highest point of all frames, at its own place.
         "top_x": (float, np.nan), "top_y": (float, np.nan), "top_z": (float, np.nan), "top_variance": (float, np.nan),
         "top_way": (float, np.nan), "top_frame": (float, np.nan),
@@ -45,7 +46,7 @@ class ElevationMap:
         self.spacing, self.points = setup["map"]["spacing"], setup["map"]["points"]
         self.rules = setup["rules"]
         self.drift = Drift(setup)
-        self.frame_now, self.way_now = 0, 0.0
+        self.frame_now, self.way_now, self.corrected_now = 0, 0.0, 0.0
         self.origin = np.array(origin, float)
         self.centre = np.zeros(2, int)
         self.clear()
@@ -210,7 +211,7 @@ class ElevationMap:
         highest new points."""
         new = {"x": points[:, 0], "y": points[:, 1], "elevation": points[:, 2],
                "variance": np.maximum(variance, MIN_VARIANCE), "way": np.full(len(i), way),
-               "frame": np.full(len(i), float(self.frame_now)),
+               "frame": np.full(len(i), float(self.frame_now)), "corrected": np.full(len(i), self.corrected_now),
                "sight_x": sight[:, 0], "sight_y": sight[:, 1], "sight_slope": sight[:, 2]}
         new = {name: values.copy() for name, values in new.items()}
         met = self.source[j, i] == MEASURED
@@ -225,7 +226,7 @@ class ElevationMap:
             rise = now["elevation"] - old["elevation"]
             step = np.abs(rise) > limit
             share = aged / (aged + now["variance"])  # of the new one
-            blend = {name: old[name] + share * (now[name] - old[name]) for name in ("x", "y", "elevation")}
+            blend = {name: old[name] + share * (now[name] - old[name]) for name in ("x", "y", "elevation", "corrected")}
             blend["variance"] = np.maximum(share * now["variance"], MIN_VARIANCE)
             blend["way"], blend["frame"] = now["way"], now["frame"]
             # The flatter of both; of equal ones the new one.

@@ -31,7 +31,7 @@ class Shadows:
                     here = (before == k) & (behind == n)
                     quartet = [[shifted(values, step * di, step * dj, np.nan) for values in (x, y, z)]
                                for step in (-k - 1, -k, n, n + 1)]
-                    peak = np.where(here, np.fmax(peak, peak_between(*quartet)[2]), peak)
+                    peak = np.where(here, np.fmax(peak, bend_between(*quartet, 1)[2]), peak)
             bridged = ~measured & (before + behind - 1 <= longest)
             ends = np.where(bridged, np.maximum(ends, np.maximum(peak, np.maximum(first, last))), ends)
         hidden = lines_of_sight(elevation_map, measured)
@@ -52,21 +52,29 @@ def highest_points(elevation_map, measured):
     return [np.where(measured, values, np.nan) for values in (x, y, z)]
 
 
-def peak_between(before, near, far, after):
-    """Where the rises that lead up to two points meet: place and height; -infinity where they do not. Each argument is a list
-    of x, y, z."""
-    def rise(foot, top):
-        away = np.hypot(top[0] - foot[0], top[1] - foot[1])
-        return np.where(away > 0, np.minimum((top[2] - foot[2]) / np.where(away > 0, away, 1), MAX_CONTINUED_SLOPE), 0)
+def bend_between(before, near, far, after, sign):
+    """Where the ground between `near` and `far` bends, above the straight line from one to the other (sign 1) or below it (-1):
+    x, y, z; NaN where it does not. Each other argument is a list of x, y, z."""
+    def slope(foot, end):
+        away = np.hypot(end[0] - foot[0], end[1] - foot[1])
+        steep = np.where(away > 0, (end[2] - foot[2]) / np.where(away > 0, away, 1), 0)
+        return np.clip(steep, -MAX_CONTINUED_SLOPE, MAX_CONTINUED_SLOPE)
 
-    up, down = rise(before, near), rise(after, far)
+    up, down = slope(before, near), slope(after, far)
     length = np.hypot(far[0] - near[0], far[1] - near[1])
     with np.errstate(divide="ignore", invalid="ignore"):
         way = (far[2] - near[2] + down * length) / (up + down)
-        there = (up > 0) & (down > 0) & (way >= 0) & (way <= length) & (length > 0)
-        share = np.where(there, way / length, np.nan)
-    return [near[0] + (far[0] - near[0]) * share, near[1] + (far[1] - near[1]) * share,
-            np.where(there, near[2] + up * way, -np.inf)]
+        way = np.where((way > 0) & (way < length), way, np.nan)
+        share = way / length
+        bends = sign * (up * way - (far[2] - near[2]) * share) > 0
+        meeting = [near[0] + (far[0] - near[0]) * share, near[1] + (far[1] - near[1]) * share, near[2] + up * way]
+        # Where there is an edge, the side that is asked for goes on half way.
+        edge = np.abs(far[2] - near[2]) > MAX_CONTINUED_SLOPE * length
+        by_near, by_far = near[2] + up * length / 2, far[2] + down * length / 2
+        half = np.maximum(by_near, by_far) if sign > 0 else np.minimum(by_near, by_far)
+        at_edge = [(near[0] + far[0]) / 2, (near[1] + far[1]) / 2, half]
+        bends = np.where(edge, True, bends)
+        return [np.where(bends, np.where(edge, a, m), np.nan) for a, m in zip(at_edge, meeting)]
 
 
 def run_to_measured(measured, z, di, dj, longest):

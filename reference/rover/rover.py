@@ -145,6 +145,7 @@ class Rover:
         points = np.column_stack([seen, placed])
         if setup["rules"]["start"] == "circle":
             self.stands.append((x, y, self.elevation.z, slopes_of_plane(rotation)))
+        self.map.corrected_now = self.elevation.corrected
         found = self.map.enter(placed, own + self.elevation.variance, self.way, sight_slopes)
         out = Frame(edges, points, left_out, pose.position, rotation, read, np.sqrt(self.elevation.variance),
                     tuple(int(m) for m in moved), found)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from elevation_map import MEASURED, PROXIMITY, UNKNOWN
-from gaps import highest_points, peak_between, shifted
+from gaps import bend_between, highest_points, shifted
 from obstacle_map import CLEAR, Verdict
 
 # Axle, share of the wheelbase ahead of Q, side.
@@ -17,17 +17,19 @@ NEAR = 1e-9  # a decision nearer than this is one of rounding
 
 @dataclass
 class Support:
-    """Where a wheel rests: height of its hub, the ground point, and the mean variance of the points below it."""
+    """Where a wheel rests: height of its hub, the ground point, the mean variance of the points below it, and the mean sum
+    of corrections by which stripes measured them (None: they did not)."""
 
     hub: float
     point: np.ndarray
     variance: float
+    corrected: float = None
 
 
 @dataclass
 class Wheel:
     """By measured ground alone, by it and the ground that the vehicle stood on, by measured ground without the highest points
-    of cells, by all that may be there; what is missing:
+    of cells and bent down, by all that may be there; what is missing:
     None, or index j, i; and the first place where it stood and did not measure."""
 
     measured: Support
@@ -54,6 +56,7 @@ class WheelTests:
         self.z = np.where(self.measured, m.elevation, np.nan)
         # The proximity sensor's cells count as without error.
         self.variance = np.where(own, m.variance_now(), 0.0)
+        self.corrected = np.where(own, m.corrected, np.nan)
         self.high = highest_points(m, self.measured)
         tall = own & np.isfinite(m.top_z)
         self.top = [np.where(tall, values, np.nan) for values in (m.top_x, m.top_y, m.top_z, m.top_variance_now())]
@@ -99,49 +102,63 @@ class WheelTests:
 
         x, y, z, variance = self.x[w], self.y[w], self.z[w], self.variance[w]
         a, b = axes(x, y)
-        offers = [(np.where(inside(a, b), z, np.nan), x, y, a, variance)]
+        points = [(np.where(inside(a, b), z, np.nan), x, y, a, variance)]
+        with np.errstate(invalid="ignore"):
+            below = self.corrected[w][inside(a, b) & np.isfinite(z) & np.isfinite(self.corrected[w])]
+        corrected = float(below.mean()) if len(below) else None
         tx, ty, tz, tv = (values[w] for values in self.top)
         ta, tb = axes(tx, ty)
-        tops, peaks = [], []
+        tops = []
         with np.errstate(invalid="ignore"):
             tops.append((np.where(inside(ta, tb), tz, np.nan), tx, ty, ta, tv))
-        # The straight lines between neighbouring measured points, cut to the rectangle.
-        for di, dj in ((1, 0), (0, 1), (1, 1), (1, -1)):
-            height, width = z.shape
-            j0, j1 = max(0, -dj), height - max(0, dj)
-            one, two = (slice(j0, j1), slice(0, width - di)), (slice(j0 + dj, j1 + dj), slice(di, width))
-            low, high = np.zeros(z[one].shape), np.ones(z[one].shape)
-            for p, q, limit in ((a[one], a[two], radius), (b[one], b[two], half)):
+
+        def on_lines(one, two, variance):
+            """Where the straight lines between two points (x, y, z each) enter and leave the rectangle, and touch the wheel."""
+            ends = [axes(one[0], one[1]), axes(two[0], two[1])]
+            low, high = np.zeros(z.shape), np.ones(z.shape)
+            for axis, limit in ((0, radius), (1, half)):
+                p, q = ends[0][axis], ends[1][axis]
                 with np.errstate(divide="ignore", invalid="ignore"):
                     t1, t2 = (-limit - p) / (q - p), (limit - p) / (q - p)
                 level = q == p
                 low = np.where(level, low, np.maximum(low, np.minimum(t1, t2)))
                 high = np.where(level, np.where(np.abs(p) <= limit, high, -1.0), np.minimum(high, np.maximum(t1, t2)))
-            ok = np.isfinite(z[one]) & np.isfinite(z[two]) & (low <= high)
+            ok = np.isfinite(one[2]) & np.isfinite(two[2]) & (low <= high)
+            along = ends[1][0] - ends[0][0]
             with np.errstate(divide="ignore", invalid="ignore"):
-                slope = (z[two] - z[one]) / (a[two] - a[one])
-                touch = (radius * slope / np.sqrt(1 + slope * slope) - a[one]) / (a[two] - a[one])
+                slope = (two[2] - one[2]) / along
+                touch = (radius * slope / np.sqrt(1 + slope * slope) - ends[0][0]) / along
             touches = ok & (touch >= low) & (touch <= high)
-            if di * dj == 0:
-                quartet = [[shifted(values, step * di, step * dj, np.nan)[w] for values in self.high]
-                           for step in (-1, 0, 1, 2)]
-                px, py, pz = peak_between(*quartet)
-                pa, pb = axes(px, py)
-                with np.errstate(invalid="ignore"):
-                    met = np.isfinite(pz) & inside(pa, pb)
-                peaks.append((np.where(met, pz, np.nan), px, py, pa, np.zeros(pa.shape)))
             for share, may in ((low, ok), (high, ok), (touch, touches)):
                 t = np.where(may, share, 0.0)
-                px, py = x[one] + t * (x[two] - x[one]), y[one] + t * (y[two] - y[one])
-                offers.append((np.where(may, z[one] + t * (z[two] - z[one]), np.nan), px, py, axes(px, py)[0],
-                               np.maximum(variance[one], variance[two])))
-        means = offers
-        offers = offers[:1] + tops + offers[1:]
+                px, py, pz = (p + t * (q - p) for p, q in zip(one, two))
+                yield np.where(may, pz, np.nan), px, py, axes(px, py)[0], variance
+
+        # Between neighbouring measured points: the straight lines, and where the ground may bend up or down.
+        straight, bent_up, bent_down = [], [], []
+        for di, dj in ((1, 0), (0, 1), (1, 1), (1, -1)):
+            def line_of(arrays):
+                """Four cells in a row on this line of the grid: the second is the window's own."""
+                return [[shifted(values, step * di, step * dj, np.nan)[w] for values in arrays] for step in (-1, 0, 1, 2)]
+
+            quartet = line_of((self.x, self.y, self.z))
+            near, far = quartet[1:3]
+            larger = np.maximum(variance, shifted(self.variance, di, dj, np.nan)[w])
+            straight += on_lines(near, far, larger)
+            # Where it does not bend, the end takes the bend's place.
+            bend = bend_between(*quartet, -1)
+            middle = [np.where(np.isfinite(bend[2]), at_bend, at_end) for at_bend, at_end in zip(bend, far)]
+            bent_down += [*on_lines(near, middle, larger), *on_lines(middle, far, larger)]
+            if di * dj == 0:
+                quartet = line_of(self.high)
+                bend = bend_between(*quartet, 1)
+                bent_up += [*on_lines(quartet[1], bend, larger), *on_lines(quartet[2], bend, larger)]
+        offers, means = points + tops + straight, points + bent_down
         measured = self.highest_of(offers)
         gx, gy, top = self.grid_x[w], self.grid_y[w], self.wheel_top[w]
         a, b = axes(gx, gy)
         under = inside(a, b)
-        highest = self.highest_of(offers + peaks + [(np.where(under, top, np.nan), gx, gy, a, np.zeros(a.shape))])
+        highest = self.highest_of(offers + bent_up + [(np.where(under, top, np.nan), gx, gy, a, np.zeros(a.shape))])
         lacks = under & np.isnan(top) & ~self.measured[w]
         missing = None
         if lacks.any():
@@ -152,6 +169,9 @@ class WheelTests:
         on = np.where(under & self.is_stood[w], top, np.nan)
         on_stood = [(on, gx, gy, a, np.zeros(a.shape))]
         supported, lowest = self.highest_of(offers + on_stood), self.highest_of(means + on_stood)
+        for support in (measured, supported, lowest, highest):
+            if support is not None:
+                support.corrected = corrected
         stood = np.argwhere(~np.isnan(on))
         stood = (stood[0][0] + w[0].start, stood[0][1] + w[1].start) if len(stood) else None
         return Wheel(measured, supported, lowest, highest, missing, stood)
@@ -193,7 +213,7 @@ class WheelTests:
             supports = [[getattr(wheels[k], by) for k in side] for side in (one, two)]
             return compared(supports, name, one, two, errors)
 
-        def compared(supports, name, one, two, errors, is_signed=False):
+        def compared(supports, name, one, two, errors, is_signed=False, is_tilted=False):
             nonlocal tie
             if any(support is None for side in supports for support in side):
                 return None
@@ -201,9 +221,18 @@ class WheelTests:
             variance = sum(sum(s.variance for s in side) / len(side) ** 2 for side in supports)
             run = length if name == "length" else v["track"]
             rise = apart if is_signed else abs(apart)
+            if is_tilted:
+                rise += max(0.0, by_tilt(supports))
             over = rise + errors * float(np.sqrt(variance)) - slopes[name] * run
             tie |= abs(over) <= NEAR
             return over > RISE, two if apart > 0 else one
+
+        def by_tilt(supports):
+            """How much higher the first side would stand above the second by the vehicle's tilt alone."""
+            sums = [[s.corrected for s in side] for side in supports]
+            if any(one is None for side in sums for one in side):
+                return 0.0
+            return float(np.mean(sums[1]) - np.mean(sums[0]))
 
         pairs = [("front", [0], [1]), ("rear", [2], [3]), ("length", [0, 1], [2, 3])]
 
@@ -221,19 +250,19 @@ class WheelTests:
             supports = [[wheels[k].measured for k in high], [wheels[k].supported for k in low]]
             return compared(supports, name, high, low, errors, is_signed=True)[0]
 
-        def exceeds_at_most(name, one, two, errors):
-            """Either side with all that may stand under it, the other without: the larger rise counts."""
+        def exceeds_at_most(name, one, two, errors, is_tilted=False):
+            """Either side with all that may stand under it, the other without: the larger rise counts, by the ground or by tilt."""
             rises = []
             for high, low in ((one, two), (two, one)):
                 supports = [[wheels[k].highest for k in high], [wheels[k].lowest for k in low]]
                 if all(support is not None for side in supports for support in side):
-                    rises.append((sum(s.hub for s in supports[0]) / len(high) - sum(s.hub for s in supports[1]) / len(low),
-                                  supports, high, low))
+                    rise = sum(s.hub for s in supports[0]) / len(high) - sum(s.hub for s in supports[1]) / len(low)
+                    rises.append((rise + max(0.0, by_tilt(supports)), supports, high, low))
             if not rises:
                 found = compare("highest", name, one, two, errors)
                 return bool(found and found[0])
             _, supports, high, low = max(rises, key=lambda rise: rise[0])
-            return compared(supports, name, high, low, errors, is_signed=True)[0]
+            return compared(supports, name, high, low, errors, is_signed=True, is_tilted=is_tilted)[0]
 
         margin = -self.limits["obstacle_margin"]
         for name, one, two in pairs:
@@ -252,7 +281,7 @@ class WheelTests:
                         return self.lacking("not_measured", f"{WHEELS[k][0]}_wheel", *wheels[k].stood, tie)
         for name, one, two in pairs:
             # What may stand in gaps may be too high, or the errors may be too large.
-            if exceeds_at_most(name, one, two, self.limits["clear_margin"]):
+            if exceeds_at_most(name, one, two, self.limits["clear_margin"], is_tilted=True):
                 part = "rear_wheel" if name == "rear" else "front_wheel"
                 hides = exceeds_at_most(name, one, two, 0) and not by_measured(name, one, two, 0)
                 return Verdict("unknown", "may_hide" if hides else "near_limit", part, (float(qx), float(qy)), tie)

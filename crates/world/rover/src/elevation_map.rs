@@ -90,6 +90,8 @@ pub(crate) struct Cell {
     pub odometer: f64,
     /// Frame of the last measurement.
     pub frame: u64,
+    /// Sum of the corrections of the vehicle's elevation until it was measured, metres: [`ElevationMap::correct`].
+    pub corrected: f64,
     /// Highest point of all frames, which the mean of several frames does not lower. `None` without a measurement, and as printed.
     pub top: Option<Top>,
     /// Flattest line of sight by which it was measured.
@@ -144,6 +146,8 @@ pub struct ElevationMap {
     /// Distance driven so far, metres. Measurements age with it, and with the frames.
     pub(crate) odometer: f64,
     pub(crate) frame: u64,
+    /// Sum of the corrections of the vehicle's elevation so far, metres.
+    pub(crate) corrected: f64,
     pub(crate) drift: KnownDrift,
 }
 
@@ -165,7 +169,7 @@ impl ElevationMap {
         assert!(size.validate("map").is_ok(), "invalid map size: {size:?}");
         let cells = vec![Cell::default(); size.points as usize * size.points as usize];
         let (centre, drift) = (GridPoint { i: 0, j: 0 }, KnownDrift::default());
-        Self { size, origin, centre, cells, update: 0, rules, odometer: 0.0, frame: 0, drift }
+        Self { size, origin, centre, cells, update: 0, rules, odometer: 0.0, frame: 0, corrected: 0.0, drift }
     }
 
     /// Size of the map.
@@ -259,6 +263,11 @@ impl ElevationMap {
         self.odometer += distance;
     }
 
+    /// Notes that the vehicle's elevation was corrected by the ground: it is higher by this than its tilt had made it, metres.
+    pub fn correct(&mut self, by: f64) {
+        self.corrected += by;
+    }
+
     /// Centres the map on the grid point nearest to the vehicle, and returns the motion in grid steps. "The
     /// central grid point of the map is moved with the vehicle but only in increments of the grid spacing." (§7)
     pub fn recentre(&mut self, vehicle: DVec2) -> (i64, i64) {
@@ -295,6 +304,7 @@ impl ElevationMap {
                 variance: standard_error * standard_error,
                 odometer: self.odometer,
                 frame: self.frame,
+                corrected: self.corrected,
                 stood: self.cells[index].stood,
                 ..Cell::default()
             };

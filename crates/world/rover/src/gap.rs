@@ -1,7 +1,7 @@
 //! The gap problem: an estimate of the elevation of ground that was not seen. (Paper, §7)
 
+use crate::bend::{bend_up, top_of};
 use crate::elevation_map::{ElevationMap, ElevationSource, GridPoint, is_measured};
-use crate::peak::{highest, peak_between};
 
 /// Rule for narrow gaps, the solution that the paper leaves open: "A more general solution, which we have not yet
 /// implemented, is to allow the vehicle to go over the gaps that are less than one wheel thickness wide. To test if the
@@ -38,7 +38,7 @@ impl GapRule {
             let bracket = |sign: i64| {
                 (1..=max_steps).find_map(|n| {
                     let at = GridPoint { i: point.i + sign * n * i, j: point.j + sign * n * j };
-                    is_measured(map, at).then(|| highest(map, at).map(|top| (n - 1, at, top.z))).flatten()
+                    is_measured(map, at).then(|| top_of(map, at).map(|top| (n - 1, at, top.z))).flatten()
                 })
             };
             let (Some((before, near_at, near)), Some((beyond, far_at, far))) = (bracket(-1), bracket(1))
@@ -46,8 +46,8 @@ impl GapRule {
                 continue;
             };
             if before + 1 + beyond <= max_steps {
-                let peak = peak_between(map, near_at, far_at, (i, j)).map(|peak| peak.z);
-                let higher = near.max(far).max(peak.unwrap_or(f64::NEG_INFINITY));
+                let bend = bend_up(map, near_at, far_at, (i, j)).map(|bend| bend.z);
+                let higher = near.max(far).max(bend.unwrap_or(f64::NEG_INFINITY));
                 estimate = Some(estimate.map_or(higher, |top| top.max(higher)));
             }
         }

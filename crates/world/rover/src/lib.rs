@@ -57,6 +57,7 @@
 //! assert_eq!(vectors[14].label, Label::Obstacle);
 //! ```
 
+mod bend;
 mod drive;
 mod drive_plan;
 mod elevation_estimate;
@@ -72,7 +73,6 @@ mod navigator_map;
 mod noise_stream;
 mod obstacle_map;
 mod otsu;
-mod peak;
 mod registration;
 mod rig;
 mod route;

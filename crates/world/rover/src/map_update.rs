@@ -147,6 +147,7 @@ impl ElevationMap {
             variance: (point.standard_error * point.standard_error).max(MIN_VARIANCE_M2),
             odometer: self.odometer,
             frame: self.frame,
+            corrected: self.corrected,
             top: None,
             sight: point.sight,
             measured: None,
@@ -177,6 +178,7 @@ impl ElevationMap {
         Cell {
             elevation: before.elevation + share * rise,
             place: before.place + (new.place - before.place) * share,
+            corrected: before.corrected + (new.corrected - before.corrected) * share,
             variance: (share * new.variance).max(MIN_VARIANCE_M2),
             sight: flatter(new.sight, before.sight),
             top,

@@ -196,6 +196,7 @@ impl Mapper {
         let believed = Estimate { elevation: z, variance: self.variance };
         let registered = Estimate { elevation: z - error.elevation, variance: error.variance };
         let estimate = believed.corrected(registered);
+        self.map.correct(estimate.elevation - z);
         self.pose.position.z = estimate.elevation;
         self.variance = estimate.variance;
     }
@@ -231,7 +232,7 @@ impl Mapper {
 
     /// Mended elevation: the prediction by the mean of the tilts before and now, corrected by the ground around.
     fn estimate(
-        &self,
+        &mut self,
         sensed: &LocalisationReading,
         displacement: DVec2,
         attitude: &Pose,
@@ -249,7 +250,9 @@ impl Mapper {
             None => (predicted, false),
             Some(fit) => {
                 let fit = Estimate { elevation: fit.elevation + distance, variance: fit.variance + noise };
-                (predicted.corrected(fit), true)
+                let estimate = predicted.corrected(fit);
+                self.map.correct(estimate.elevation - predicted.elevation);
+                (estimate, true)
             }
         }
     }

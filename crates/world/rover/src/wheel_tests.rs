@@ -11,9 +11,9 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::bend::{bend_down, bend_up, top_of};
 use crate::elevation_map::{ElevationMap, ElevationSource, GridPoint, is_measured};
 use crate::gap::MapWithShadows;
-use crate::peak::peak_between;
 use crate::traversability::{
     Missing, MissingReason, RISE_ROUNDING_M, Traversability, TraversabilityRules, TraversabilityTest,
     VehiclePart,
@@ -39,12 +39,16 @@ enum Known {
     Nothing(Missing),
 }
 
-/// Height of a wheel's centre, global, metres, and its variance, square metres: the mean of the measured points
-/// below the wheel.
+/// A wheel's centre on the ground.
 #[derive(Debug, Clone, Copy)]
 struct Hub {
+    /// Global, metres.
     height: f64,
+    /// Variance of the height, square metres: the mean of the measured points below the wheel.
     variance: f64,
+    /// Sum of the corrections of the vehicle's elevation until its stripes measured these points, metres, in the mean. `None`
+    /// if they measured none.
+    corrected: Option<f64>,
 }
 
 /// A wheel on the ground: its hub by measured points alone, by these and the ground that the vehicle stood on, and by all
@@ -199,7 +203,8 @@ impl TraversabilityRules {
         }
         // All wheels are known from here on. What may stand in gaps may still be too high, or the errors too large.
         for (test, rises, limit) in &tests {
-            if exceeds(rises.highest, self.margins.clear, *limit) {
+            let by_tilt = rises.highest.map(|rise| Rise { height: rise.most(), ..rise });
+            if exceeds(by_tilt, self.margins.clear, *limit) {
                 let part = match test {
                     TraversabilityTest::Rear => VehiclePart::RearWheel,
                     _ => VehiclePart::FrontWheel,
@@ -290,10 +295,10 @@ impl Ground<'_> {
             let Some(at) = rectangle.within(point.truncate()) else { return };
             let height = point.z + (radius * radius - at.x * at.x).max(0.0).sqrt();
             if kept.is_none_or(|kept| height > kept.height) {
-                *kept = Some(Hub { height, variance });
+                *kept = Some(Hub { height, variance, corrected: None });
             }
         };
-        let mut inside = (0.0, 0_u32);
+        let (mut inside, mut corrected) = ((0.0, 0_u32), (0.0, 0_u32));
         for point in rectangle.grid_points(self.map) {
             match self.under_wheel(part, point) {
                 Known::Measured(sample, variance) => {
@@ -302,6 +307,10 @@ impl Ground<'_> {
                     }
                     if rectangle.within(sample.truncate()).is_some() {
                         inside = (inside.0 + variance, inside.1 + 1);
+                        let cell = self.map.cell(point);
+                        if cell.source == ElevationSource::Measured {
+                            corrected = (corrected.0 + cell.corrected, corrected.1 + 1);
+                        }
                     }
                     // The mean of several frames is lower than what stands in the cell.
                     if let Some(top) = self.map.cell(point).top {
@@ -316,16 +325,26 @@ impl Ground<'_> {
                         if !is_measured(self.map, beside) {
                             continue;
                         }
-                        if let Some(other) = self.map.sample(beside) {
-                            let variance = variance.max(self.variance(beside));
-                            for on_edge in rectangle.highest_on_edge(sample, other, radius) {
-                                for hub in wheel.all() {
+                        let Some(other) = self.map.sample(beside) else { continue };
+                        let variance = variance.max(self.variance(beside));
+                        let rest_on_line = |a: DVec3, b: DVec3, hubs: &mut [&mut Option<Hub>]| {
+                            for on_edge in rectangle.highest_on_edge(a, b, radius) {
+                                for hub in hubs.iter_mut() {
                                     rest_on(on_edge, variance, hub);
                                 }
                             }
-                        }
-                        if let Some(peak) = peak_between(self.map, point, beside, (i, j)) {
-                            rest_on(peak, variance, &mut wheel.highest);
+                        };
+                        let WheelOnMap { measured, supported, lowest, highest, .. } = &mut wheel;
+                        rest_on_line(sample, other, &mut [measured, supported, highest]);
+                        // Or it bends down, and the wheel stands lower.
+                        let bend = bend_down(self.map, point, beside, (i, j)).unwrap_or(other);
+                        rest_on_line(sample, bend, &mut [lowest]);
+                        rest_on_line(bend, other, &mut [lowest]);
+                        // Or up, and the wheel may stand higher.
+                        if let Some(bend) = bend_up(self.map, point, beside, (i, j)) {
+                            for end in [point, beside].into_iter().filter_map(|at| top_of(self.map, at)) {
+                                rest_on_line(end, bend, &mut [highest]);
+                            }
                         }
                     }
                 }
@@ -348,9 +367,10 @@ impl Ground<'_> {
         }
         // Which of several points carries the wheel can be a matter of rounding, and must not decide the variance.
         if inside.1 > 0 {
-            let mean = inside.0 / f64::from(inside.1);
+            let variance = inside.0 / f64::from(inside.1);
+            let corrected = (corrected.1 > 0).then(|| corrected.0 / f64::from(corrected.1));
             for hub in wheel.all().into_iter().flatten() {
-                hub.variance = mean;
+                (hub.variance, hub.corrected) = (variance, corrected);
             }
         }
         wheel
@@ -405,6 +425,25 @@ impl Ground<'_> {
 struct Rise {
     height: f64,
     standard_error: f64,
+    /// So much higher it would be without the corrections of the vehicle's elevation between the measurements of both sides.
+    by_tilt: f64,
+}
+
+impl Rise {
+    /// The same, of the other side above this one.
+    fn reversed(self) -> Self {
+        Self { height: -self.height, by_tilt: -self.by_tilt, ..self }
+    }
+
+    /// The same, of the higher side above the lower one.
+    fn upwards(self) -> Self {
+        if self.height < 0.0 { self.reversed() } else { self }
+    }
+
+    /// Height by tilt or by the ground, whichever is higher: they disagree by the corrections, and either may be right.
+    fn most(self) -> f64 {
+        self.height + self.by_tilt.max(0.0)
+    }
 }
 
 /// Rise between two sides of the vehicle: the wheels of an axle, one each, or both axles.
@@ -424,41 +463,47 @@ impl Rises {
     fn between<const N: usize>(a: [&WheelOnMap; N], b: [&WheelOnMap; N]) -> Self {
         type Part = fn(&WheelOnMap) -> Option<Hub>;
         let middle = |wheels: [&WheelOnMap; N], part: Part| {
-            let mut mean = Hub { height: 0.0, variance: 0.0 };
+            let mut mean = Hub { height: 0.0, variance: 0.0, corrected: Some(0.0) };
             for wheel in wheels {
                 let hub = part(wheel)?;
                 mean.height += hub.height / N as f64;
                 mean.variance += hub.variance / (N * N) as f64;
+                mean.corrected =
+                    mean.corrected.zip(hub.corrected).map(|(mean, corrected)| mean + corrected / N as f64);
             }
             Some(mean)
         };
         let rise = |of_a: Part, of_b: Part| {
             let (a, b) = (middle(a, of_a)?, middle(b, of_b)?);
-            Some((a.height - b.height, (a.variance + b.variance).sqrt()))
+            // By tilt alone, as the vehicle was before its corrections, the rise would be higher by this.
+            let by_tilt = b.corrected.zip(a.corrected).map_or(0.0, |(b, a)| b - a);
+            Some(Rise {
+                height: a.height - b.height,
+                standard_error: (a.variance + b.variance).sqrt(),
+                by_tilt,
+            })
         };
         let (measured, supported): (Part, Part) = (|wheel| wheel.measured, |wheel| wheel.supported);
         let (highest, lowest): (Part, Part) = (|wheel| wheel.highest, |wheel| wheel.lowest);
         let is_known = |wheels: [&WheelOnMap; N]| wheels.iter().all(|wheel| wheel.is_known());
         let by_measured =
-            rise(measured, measured).filter(|&(height, _)| is_known(if height > 0.0 { b } else { a }));
-        let a_is_higher = by_measured.is_some_and(|(height, _)| height > 0.0);
+            rise(measured, measured).filter(|rise| is_known(if rise.height > 0.0 { b } else { a }));
+        let a_is_higher = by_measured.is_some_and(|rise| rise.height > 0.0);
+        // Below 0 the lower side may be the higher one.
         let certain = by_measured.and_then(|_| match a_is_higher {
             true => rise(measured, supported),
-            false => rise(supported, measured).map(|(height, standard_error)| (-height, standard_error)),
+            false => rise(supported, measured).map(Rise::reversed),
         });
         let lower = if a_is_higher { b } else { a };
-        let upwards = |(height, standard_error): (f64, f64)| Rise { height: height.abs(), standard_error };
         Self {
-            measured: by_measured.map(upwards),
-            // Below 0 the lower side may be the higher one.
-            certain: certain.map(|(height, standard_error)| Rise { height, standard_error }),
+            measured: by_measured.map(Rise::upwards),
+            certain,
             stood: lower.iter().find_map(|wheel| wheel.stood),
-            highest: [rise(highest, lowest), rise(lowest, highest).map(|(height, error)| (-height, error))]
+            highest: [rise(highest, lowest), rise(lowest, highest).map(Rise::reversed)]
                 .into_iter()
                 .flatten()
-                .reduce(|a, b| if b.0 > a.0 { b } else { a })
-                .or_else(|| rise(highest, highest))
-                .map(upwards),
+                .reduce(|a, b| if b.most() > a.most() { b } else { a })
+                .or_else(|| rise(highest, highest).map(Rise::upwards)),
         }
     }
 }

@@ -2,8 +2,9 @@
 
 use glam::{DVec2, DVec3};
 use raypencil_rover::{
-    Attitude, ElevationMap, ErrorMargins, GridPoint, LocalisationReading, MapRules, MapSize, MapWithShadows,
-    Mapper, Missing, MissingReason, StripePoint, Traversability, TraversabilityRules, Vehicle,
+    Attitude, ElevationMap, ErrorMargins, GridPoint, LocalisationReading, MapPoint, MapRules, MapSize,
+    MapWithShadows, Mapper, Missing, MissingReason, StripePoint, Traversability, TraversabilityRules,
+    Vehicle,
 };
 
 /// Measured cells where `z` gives an elevation.
@@ -87,7 +88,7 @@ fn a_stone_whose_top_lies_between_two_stripes_may_be_higher_than_all_that_was_me
     // The axle is over (1, 0): 5 cm before the ridge's line the wheel's hub is at z + sqrt(0.35^2 - 0.05^2), 3.6 mm less.
     assert_eq!(judge(&ground(ridge(0.31))), Traversability::Clear);
     assert!(may_hide(judge(&ground(ridge(0.33)))), "{:?}", judge(&ground(ridge(0.33))));
-    // A step of that height is level on one side: nothing goes on there.
+    // The lines before and behind a level step of that height never meet.
     let step = |i: i64, j: i64| Some(if i >= 10 && j > 0 { 0.33 } else { 0.0 });
     assert_eq!(judge(&ground(step)), Traversability::Clear);
     // As a plane of the same slope is.
@@ -110,4 +111,72 @@ fn what_may_hide_under_the_lower_side_does_not_lift_it() {
         Some(ridge + if j > 0 { 0.33 } else { 0.0 })
     });
     assert!(may_hide(judge(&map)), "{:?}", judge(&map));
+}
+
+#[test]
+fn the_edge_of_a_plateau_between_two_stripes_may_carry_a_wheel() {
+    // On the left a plateau 0.355 m high, whose edge is at y = 0.61 m, with a slope of 1 from there to level ground at 0. The straight
+    // line from y = 0.7 to 0.6 m enters the left wheels, at y = 0.625 m, 7.5 mm below the plateau: 0.3475 m passes the limit of 0.35 m.
+    let plateau = |_: i64, j: i64| Some((0.355 - (0.61 - 0.1 * j as f64).max(0.0)).max(0.0));
+    assert!(may_hide(judge(&ground(plateau))), "{:?}", judge(&ground(plateau)));
+    // A plateau 6 mm lower passes as a whole.
+    let lower = |i: i64, j: i64| plateau(i, j).map(|z| (z - 0.006).max(0.0));
+    assert_eq!(judge(&ground(lower)), Traversability::Clear);
+}
+
+#[test]
+fn the_foot_of_a_slope_between_two_stripes_does_not_lift_a_wheel() {
+    // The right wheels stand on level ground up to the foot of a slope of 1, at y = -0.35 m. The straight line from y = -0.4 to
+    // -0.3 m leaves them, at y = -0.375 m, 12.5 mm above the ground. The left wheels stand at 0.355 m: by the straight line
+    // 0.3425 m higher, in truth by more than the limit of 0.35 m.
+    let foot = |top: f64| move |_: i64, j: i64| Some((0.1 * j as f64 + 0.35).clamp(0.0, top));
+    assert!(may_hide(judge(&ground(foot(0.355)))), "{:?}", judge(&ground(foot(0.355))));
+    assert_eq!(judge(&ground(foot(0.349))), Traversability::Clear);
+}
+
+#[test]
+fn a_rise_is_clear_both_by_the_tilt_and_by_the_ground() {
+    // The left half lies 0.33 m higher, 0.02 m below the limit. The points err by 1 mm, two sides by 1.4 mm; by two of these the
+    // left half is clear. It was measured after the vehicle's elevation was corrected by -0.02 m: by its tilt alone the left half would
+    // be 0.35 m higher. Corrected by +0.02 m, 0.31 m.
+    let judged = |by: f64| {
+        let mut map =
+            ElevationMap::with_rules(MapSize { spacing: 0.1, points: 81 }, DVec2::ZERO, MapRules::MENDED);
+        let points: Vec<GridPoint> = map.points().collect();
+        for (is_left, z) in [(false, 0.0), (true, 0.33)] {
+            let half = points.iter().filter(|point| (point.j > 0) == is_left);
+            let half: Vec<MapPoint> = half
+                .map(|point| map.place(*point).extend(z))
+                .map(|point| MapPoint { point, standard_error: 0.001, sight: None })
+                .collect();
+            map.insert(half);
+            map.correct(by);
+        }
+        let rules = TraversabilityRules::for_vehicle(&Vehicle::default());
+        rules.classify(&MapWithShadows::of(&map), &Vehicle::default(), DVec2::new(1.0, 0.0), DVec2::X)
+    };
+    // 0.33 + 0.017 + 2 * 0.0014 m is just below 0.35 m, but less than 0.5 mm.
+    for by in [0.0, 0.02, -0.0168] {
+        assert_eq!(judged(by), Traversability::Clear, "{by}");
+    }
+    let far = judged(-0.0175);
+    assert!(
+        matches!(far, Traversability::Unknown(Missing { reason: MissingReason::NearLimit, .. })),
+        "{far:?}"
+    );
+}
+
+#[test]
+fn an_edge_between_two_points_may_stand_half_way() {
+    // On the left a block from y = 0.7 m on; at y = 0.6 m the ground is 0. The straight line enters the left wheels, at
+    // y = 0.625 m, at a quarter of its height, but the block may reach to y = 0.65 m and there fall at once: the line from there is half as
+    // high at the wheels.
+    let block = |top: f64| move |_: i64, j: i64| Some(if j >= 7 { top } else { 0.0 });
+    assert!(may_hide(judge(&ground(block(0.72)))), "{:?}", judge(&ground(block(0.72))));
+    assert_eq!(judge(&ground(block(0.68))), Traversability::Clear);
+    // A pit on the right from y = -0.4 m on; its edge was met at y = -0.3 m, beside the wheels. The straight line leaves them, at
+    // y = -0.375 m, three quarters down, and a pit that begins at y = -0.35 m leaves them on its ground.
+    let pit = |depth: f64| move |_: i64, j: i64| Some(if j <= -4 { -depth } else { 0.0 });
+    assert!(may_hide(judge(&ground(pit(0.36)))), "{:?}", judge(&ground(pit(0.36))));
+    assert_eq!(judge(&ground(pit(0.34))), Traversability::Clear);
 }
