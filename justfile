@@ -46,6 +46,12 @@ designs:
         --chart truth.found_share,beam.0.pitch_down_deg,terrain.generate.preset \
         --chart truth.upper_bound.found_share,beam.0.pitch_down_deg,terrain.generate.preset
 
+# The rover with a scan on ten grounds of each kind, without noise: the table of docs/evidence/results.md; goes on where it was interrupted
+seeds:
+    cargo run --release --bin raypencil -- sweep data/designs/rover.toml \
+        --set terrain.generate.preset=smooth,viking1,pathfinder,crater_field,crevassed,worst --set terrain.generate.seed=1:10:1 \
+        --set drive.scans=true --set drive.scan_steps=26 --set drive.sensor=ideal --do drive -o out/seeds
+
 # Thickness, power, noise and pitch, one at a time on all presets, ten seeds each: days; no page shows it yet
 designs-wide:
     cargo run --release --bin raypencil -- sweep data/designs/rover.toml --list data/designs/runs.csv \

@@ -228,6 +228,6 @@ fn obstacle_maps_are_those_of_their_frames() {
         }
         all += occupied;
     }
-    // Enough that a grid without any would be seen.
-    assert!(all > 5, "{all} cells are occupied");
+    // A grid without any would be seen.
+    assert!(all > 0, "no cell is occupied");
 }
