@@ -30,6 +30,9 @@ const MAX_LEFT: f64 = 1.0 / 32.0;
 /// More numbers leave at most this part of what fewer leave. Tuned: of noise they leave nearly all.
 const MORE_NUMBERS_LEAVE: f64 = 1.0 / 8.0;
 
+/// Residuals that a few roundings leave: what leaves no more than that, more numbers do not better.
+const ROUNDINGS: f64 = 1e-13;
+
 /// Of two explanations by as many numbers, the worse leaves so many times more; else neither is told.
 const MIN_RATIO: f64 = 3.0;
 
@@ -169,10 +172,10 @@ pub(crate) fn calibrations(case: Case<'_>, places: &[Place]) -> Vec<(Mistake, Ru
         let is_good = |fit: &Fit| fit.left <= MAX_LEFT * before && is_small(scene, sensor, &fit.numbers);
         if let Some(fit) = fit(scene, &sights, model).filter(is_good) {
             // More numbers are told only if they leave much less.
-            if best
-                .iter()
-                .all(|one| one.model.len() == fit.model.len() || fit.left < MORE_NUMBERS_LEAVE * one.left)
-            {
+            if best.iter().all(|one| {
+                one.model.len() == fit.model.len()
+                    || one.left > ROUNDINGS && fit.left < MORE_NUMBERS_LEAVE * one.left
+            }) {
                 best.retain(|one| one.model.len() == fit.model.len());
                 best.push(fit);
             }

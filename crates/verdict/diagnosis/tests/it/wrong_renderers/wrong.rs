@@ -80,7 +80,8 @@ impl Wrong {
                     of_sensor.clone().flat_map(|(_, all)| all).any(|one| is_same(one, told))
                         || is_sum(of_sensor.clone().map(|(_, all)| all.as_slice()), told)
                         || is_turn_of_all(of_sensor.clone().map(|(_, all)| all.as_slice()), told)
-                        || is_line_of_all(of_sensor.map(|(_, all)| all.as_slice()), told)
+                        || is_line_of_all(of_sensor.clone().map(|(_, all)| all.as_slice()), told)
+                        || is_copied_plane(of_sensor.map(|(_, all)| all.as_slice()), told)
                 })
             })
         };
@@ -121,6 +122,13 @@ fn is_line_of_all<'m>(made: impl Iterator<Item = &'m [Mistake]>, told: &Mistake)
     line(told).is_some_and(|[f, o]| {
         is_near(f - 1.0, factor - 1.0) && (is_near(o, offset) || (o - offset).abs() < 1e-9)
     })
+}
+
+/// Whether depths from the plane were copied to the ranges: then both begin there.
+fn is_copied_plane<'m>(made: impl Iterator<Item = &'m [Mistake]>, told: &Mistake) -> bool {
+    let made: Vec<&Mistake> = made.flatten().collect();
+    let parts = [Mistake::FromPlane(Length::Depth), Mistake::DepthForRange];
+    *told == Mistake::FromPlane(Length::All) && parts.iter().all(|part| made.contains(&part))
 }
 
 /// Whether what is told is the turn that several changes of axes come to.
