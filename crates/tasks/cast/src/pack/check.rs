@@ -9,7 +9,8 @@ use raypencil_scene::{Precision, Progress};
 
 use super::candidate::{CandidateConventions, read_candidate};
 use super::clouds::{CloudFacts, of_cloud, read_cloud_of};
-use super::mistakes::explain;
+use super::lengths::lengths;
+use super::mistakes::{Trial, explain};
 use super::read::RayPack;
 use crate::answers::{Answers, Questions, cast_with};
 use crate::comparison::{Comparison, Stated, compare_with};
@@ -107,7 +108,8 @@ pub fn check_ray_pack(
         progress.stage("looking for a mistake that explains the wrong rays");
         let of_cloud = case.as_ref().map(|case| of_cloud(case, &exact, sides));
         let stated = (&stated, of_cloud.as_ref());
-        explain(&exact, &mesh, (&rays.rays, sides), stated, precision, &wrong)
+        let lengths = |trial: &Trial| lengths(trial, &exact, sides);
+        explain(&exact, &mesh, (&rays.rays, sides), stated, &lengths, precision, &wrong)
     });
     let answers = cast_with(&exact, &rays.rays, sides, Questions::default(), progress);
     let name = candidate.file_name().map_or_else(|| ".".into(), |name| name.to_string_lossy().into_owned());

@@ -404,12 +404,14 @@ impl Trial {
     }
 }
 
-/// Looks for the mistake, or the two, without which hardly any ray is wrong. `wrong` are the indices of wrong rays.
+/// Looks for the mistake, or the two, without which hardly any ray is wrong. `lengths` finds numbers of arrays, and
+/// `wrong` are the indices of wrong rays.
 pub(super) fn explain(
     exact: &ExactCast<'_>,
     mesh: &Triangles,
     (rays, sides): (&[CastRay], Sides),
     (stated, of_cloud): (&Stated, Option<&OfCloud<'_>>),
+    lengths: &dyn Fn(&Trial) -> Vec<Extra<'static>>,
     precision: Precision,
     wrong: &[usize],
 ) -> Option<Explanation> {
@@ -443,7 +445,10 @@ pub(super) fn explain(
     };
     let extras = of_cloud.iter().flat_map(|of_cloud| &of_cloud.extras).map(Named::extra);
     let mistakes: Vec<Named<'_>> = extras.chain(lists.into_iter().flatten().map(Named::of)).collect();
-    let estimated_of = |trial: &Trial| of_cloud.map_or_else(Vec::new, |of_cloud| (of_cloud.estimated)(trial));
+    let estimated_of = |trial: &Trial| match of_cloud {
+        Some(of_cloud) => (of_cloud.estimated)(trial),
+        None => lengths(trial),
+    };
     let estimated = estimated_of(&trial);
     let precision = Named::of(&PRECISION);
     let single = |mistake: &Named<'_>| {
@@ -451,7 +456,8 @@ pub(super) fn explain(
     };
     let estimated = estimated.iter().map(Named::extra);
     let estimated: Vec<(String, usize)> = estimated.filter_map(|mistake| single(&mistake)).collect();
-    let singles = mistakes.iter().chain([&precision]).filter_map(single).chain(estimated);
+    // Single precision excuses much: it comes last.
+    let singles = mistakes.iter().filter_map(single).chain(estimated).chain(single(&precision));
     if let Some((mistake, left)) = singles.min_by_key(|(_, left): &(String, usize)| *left) {
         return Some(explanation(vec![mistake], left));
     }

@@ -6,6 +6,7 @@
 //! scan        times, channels and poses of a sensor's scan, beside its rays
 //! candidate   another program's arrays
 //! clouds/     another program's point cloud
+//! lengths     a factor or a length by which arrays are off
 //! mistakes    what a candidate may do otherwise, undone one by one and two by two
 //! check       a candidate against a pack
 //! report      the check in the form of every check
@@ -14,6 +15,7 @@
 mod candidate;
 mod check;
 mod clouds;
+mod lengths;
 mod mistakes;
 mod read;
 mod report;

@@ -165,6 +165,45 @@ fn numbers_of_another_convention_are_named() {
 }
 
 #[test]
+fn lengths_that_are_off_by_one_number_are_named() {
+    let rays = rays().rays;
+    let size = |index: usize| rays[index].direction.length();
+    let lengths = |factor: f64, offset: f64| {
+        let folders = Folders::right()
+            .change("t", |index, t| factor * t + offset / size(index))
+            .change("range", |_, range| factor * range + offset);
+        let points = folders.of("point");
+        let rays = rays.clone();
+        let point = move |index: usize, part: f64| {
+            let (ray, at) = (&rays[index / 3], glam::DVec3::from_slice(&points[index / 3 * 3..]));
+            let way = at - ray.origin;
+            if part.is_finite() {
+                (ray.origin + way * (factor + offset / way.length()))[index % 3]
+            } else {
+                part
+            }
+        };
+        (folders, point)
+    };
+    // Right points, and points that follow.
+    lengths(1.0001, 0.0).0.expect_why(&["100.0000 %", "lengths are 1.0001 times what they are"]);
+    let (folders, point) = lengths(0.998, 0.0);
+    folders.change("point", point).expect_why(&["100.0000 %", "lengths are 0.998 times what they are"]);
+    let (folders, point) = lengths(1.0, 0.025);
+    folders.change("point", point).expect_why(&["100.0000 %", "lengths are 0.025 too long"]);
+    lengths(1.0, -1e-6).0.without(&["point"]).expect_why(&["lengths are 0.000001 too short"]);
+    // Both at once, and an error that grows, are no single number.
+    assert_eq!(lengths(1.01, 0.25).0.check().why, None);
+    let grown = Folders::right().change("t", |_, t| t * (1.0 + 1e-3 * t)).without(&["range"]);
+    assert_eq!(grown.check().why, None);
+    // One ray of many is no number of all.
+    assert_eq!(
+        Folders::right().change("t", |index, t| if index == 7 { 1.01 * t } else { t }).check().why,
+        None
+    );
+}
+
+#[test]
 fn two_mistakes_are_both_named() {
     let no_hit = f64::from(u32::MAX);
     let two = Folders::right().change("face", |_, face| if face == no_hit { face } else { face + 1.0 });

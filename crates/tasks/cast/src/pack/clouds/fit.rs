@@ -10,13 +10,13 @@ const STEPS: usize = 12;
 const MEDIANS: f64 = 5.0;
 
 /// The middle of some numbers; `None` if there are none, or one is NaN.
-pub(super) fn median(mut numbers: Vec<f64>) -> Option<f64> {
+pub(in crate::pack) fn median(mut numbers: Vec<f64>) -> Option<f64> {
     numbers.sort_by(f64::total_cmp);
     numbers.get(numbers.len() / 2).copied().filter(|number| number.is_finite())
 }
 
 /// A number with few decimals, then with more, each once; 0 is left out.
-pub(super) fn rounded(number: f64) -> Vec<f64> {
+pub(in crate::pack) fn rounded(number: f64) -> Vec<f64> {
     let mut found: Vec<f64> = Vec::new();
     for decimals in DECIMALS {
         let text = format!("{number:.*}", decimals as usize);

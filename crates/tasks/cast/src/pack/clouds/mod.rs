@@ -9,7 +9,7 @@
 //! ```
 
 mod assign;
-mod fit;
+pub(super) mod fit;
 mod mistakes;
 mod read;
 mod turn;
