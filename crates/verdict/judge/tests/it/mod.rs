@@ -4,3 +4,4 @@ mod conventions;
 mod honest;
 mod lateral;
 mod walls;
+mod wrong_pencils;

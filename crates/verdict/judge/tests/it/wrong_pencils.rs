@@ -1,0 +1,68 @@
+//! The light of pencils that are wrong: a pixel is judged by itself, and a flux by the visibility that goes with it.
+
+use raypencil_judge::{Class, GroundTruth, Recorded, check, check_ray};
+use raypencil_scene::{FluxModel, Maybe, Place, Precision, RenderOutput, SensorId, Silent};
+
+use super::walls::{exact, map, returns, walls};
+
+#[test]
+fn a_right_pixel_stays_right_where_its_pencils_are_wrong() {
+    let scene = walls(FluxModel::Radiometric);
+    let truth = GroundTruth::certified(&scene, &Silent);
+    let mut output = exact(&scene);
+    // A program rounds its sums: its light is a few last digits off.
+    let image = &mut output.flux[0];
+    image.cells_mut().iter_mut().for_each(|flux| *flux *= 1.0 + 2.0 * f64::EPSILON);
+    let wrong_pixels = |output: &RenderOutput| {
+        let recorded = Recorded::of_output("mine", &scene, output, Precision::F64);
+        check(&truth, &recorded, &Silent).sensors[0].of(Class::Defect)
+    };
+    assert_eq!(wrong_pixels(&output), 0);
+    let lit = output.flux[0].cells().iter().filter(|flux| **flux > 0.0).count() as u64;
+    assert_ne!(lit, 0);
+    // The pencils, which it writes to files of their own, are said to meet nothing, or to be hidden.
+    let mut lost = output.clone();
+    map(&mut lost).face.as_mut().unwrap().cells_mut().fill(Maybe::NONE);
+    map(&mut lost).range.as_mut().unwrap().cells_mut().fill(Maybe::NONE);
+    let mut hidden = output.clone();
+    returns(&mut hidden).visible.as_mut().unwrap().cells_mut().fill(false);
+    // The light is held to the same bound as beside right pencils.
+    let brighter = |output: &RenderOutput, by: f64| {
+        let mut output = output.clone();
+        output.flux[0].cells_mut().iter_mut().for_each(|flux| *flux *= 1.0 + by);
+        wrong_pixels(&output)
+    };
+    // Each a fifth larger than the one before, so that a bound that is a quarter off is noticed.
+    let sizes: Vec<f64> =
+        std::iter::successors(Some(1e-15), |by| Some(1.2 * by)).take_while(|by| *by < 1e-10).collect();
+    let wrong_by_size =
+        |output: &RenderOutput| -> Vec<u64> { sizes.iter().map(|by| brighter(output, *by)).collect() };
+    let expected = wrong_by_size(&output);
+    assert_eq!((expected[0], expected[sizes.len() - 1]), (0, lit));
+    for wrong in [lost, hidden] {
+        assert_eq!(wrong_by_size(&wrong), expected);
+    }
+}
+
+#[test]
+fn flux_that_follows_from_a_wrong_visibility_is_said_to() {
+    let scene = walls(FluxModel::Radiometric);
+    let mut output = exact(&scene);
+    let seen = returns(&mut output).visible.clone().unwrap();
+    let (i, j) = (0..seen.height())
+        .flat_map(|j| (0..seen.width()).map(move |i| (i, j)))
+        .find(|(i, j)| seen.at(*i, *j))
+        .expect("a pencil that is seen");
+    let text = |output: &RenderOutput| {
+        let recorded = Recorded::of_output("mine", &scene, output, Precision::F64);
+        check_ray(&scene, &recorded, Place { sensor: SensorId::Beam(0), i, j }).unwrap().text("mine")
+    };
+    assert!(!text(&output).contains("with its own visibility"));
+    // Hidden, and so dark: the visibility alone is wrong.
+    returns(&mut output).visible.as_mut().unwrap().set(i, j, false);
+    returns(&mut output).flux.as_mut().unwrap().set(i, j, 0.0);
+    let hidden = text(&output);
+    assert!(hidden.contains("pencil flux: says 0"), "{hidden}");
+    assert_eq!(hidden.matches(": agrees with its own visibility").count(), 1, "{hidden}");
+    assert_eq!(hidden.matches(": defect\n").count(), 1, "{hidden}");
+}
