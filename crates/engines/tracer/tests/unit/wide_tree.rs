@@ -19,17 +19,27 @@ impl Visitor for Shown {
     }
 }
 
-fn walk(boxes: &[Aabb], bundle: &Bundle) -> Vec<u32> {
+/// The faces that a walk through the tree of some boxes shows.
+fn faces_of(boxes: &[Aabb], walk: impl FnOnce(&WideTree, &mut Vec<Waiting>, &mut Shown)) -> Vec<u32> {
     let forest = Forest::build(boxes.len(), |face| Some(boxes[face as usize]));
     let (faces, first_faces) = forest.faces();
     let tree = WideTree::collapse(&forest, &first_faces);
     let mut shown = Shown::default();
     let mut stack = tree.stack();
     let capacity = stack.capacity();
-    let mut bundle = *bundle;
-    tree.walk(&mut stack, &mut bundle, &mut shown);
+    walk(&tree, &mut stack, &mut shown);
     assert_eq!(stack.capacity(), capacity, "the stack was too small");
     shown.0.into_iter().map(|at| faces[at]).collect()
+}
+
+fn walk(boxes: &[Aabb], bundle: &Bundle) -> Vec<u32> {
+    let mut bundle = *bundle;
+    faces_of(boxes, |tree, stack, shown| tree.walk(stack, &mut bundle, shown))
+}
+
+/// The faces that a walk of one ray shows.
+fn walk_ray(boxes: &[Aabb], ray: &Ray) -> Vec<u32> {
+    faces_of(boxes, |tree, stack, shown| tree.walk_ray(stack, ray, shown))
 }
 
 #[test]
@@ -70,19 +80,6 @@ fn a_walk_shows_the_faces_whose_boxes_the_rays_meet_and_few_others() {
     let met: Vec<u32> = (0..4096).filter(meets).collect();
     assert!(!met.is_empty() && met.iter().all(|face| faces.contains(face)), "{met:?} of {faces:?}");
     assert!(faces.len() < 64, "{} faces", faces.len());
-}
-
-/// The faces that a walk of one ray shows.
-fn walk_ray(boxes: &[Aabb], ray: &Ray) -> Vec<u32> {
-    let forest = Forest::build(boxes.len(), |face| Some(boxes[face as usize]));
-    let (faces, first_faces) = forest.faces();
-    let tree = WideTree::collapse(&forest, &first_faces);
-    let mut shown = Shown::default();
-    let mut stack = tree.stack();
-    let capacity = stack.capacity();
-    tree.walk_ray(&mut stack, ray, &mut shown);
-    assert_eq!(stack.capacity(), capacity, "the stack was too small");
-    shown.0.into_iter().map(|at| faces[at]).collect()
 }
 
 #[test]
