@@ -1,7 +1,9 @@
 //! Mistakes in the light of pencils alone: what they meet is right.
 
+use std::sync::Arc;
+
 use raypencil_judge::{Quantity, Recorded};
-use raypencil_scene::{Image, Maybe, SensorId};
+use raypencil_scene::{Image, Maybe, Scene, SensorId};
 
 use super::candidates::*;
 
@@ -93,6 +95,33 @@ fn visible_hits_alone_are_not_taken_for_a_reversed_flag() {
         }
     }
     assert_eq!(bench.reasons(&hidden), ["beam-0, beam-1: visible_reversed"]);
+}
+
+#[test]
+fn flags_that_are_never_set_are_not_taken_for_reversed_ones() {
+    // Every hit of these pencils is seen: without a hidden one nobody knows whether flags are reversed, or not written.
+    let few = few_pyramids().scene;
+    let (mesh, camera, mut beams) = (Arc::clone(few.mesh()), *few.camera(), few.beams().to_vec());
+    for beam in &mut beams {
+        // From where the camera is, in a narrow fan.
+        beam.scene_from_sensor = camera.scene_from_sensor;
+        (beam.sensor.columns, beam.sensor.rows, beam.sensor.half_width) =
+            (24, 1, 0.1 * beam.sensor.grid_distance);
+    }
+    let bench = Bench::of(Scene::new(mesh, camera, beams, few.atmosphere(), few.flux_model()).unwrap());
+    let mut candidate = bench.exact.clone();
+    candidate.storage.retain(|(_, item), _| item.quantity == Quantity::Visible);
+    let mut all_seen = 0;
+    for beam in 0..2 {
+        let returns = &bench.exact.answers.light[beam].returns;
+        let flags = returns.visible.as_ref().unwrap();
+        let is_hit = |(i, j): &(u32, u32)| returns.cos_view.as_ref().unwrap().at(*i, *j).get().is_some();
+        let seen: Vec<bool> = cells(flags).filter(is_hit).map(|(i, j)| flags.at(i, j)).collect();
+        all_seen += usize::from(seen.len() >= 12 && seen.iter().all(|seen| *seen));
+        visible(&mut candidate, beam).cells_mut().fill(false);
+    }
+    assert!(all_seen > 0, "each beam has hidden hits");
+    assert_eq!(bench.reasons(&candidate), [""; 0]);
 }
 
 #[test]
