@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ctypes
+import json
 import subprocess
 import sys
 from fractions import Fraction
@@ -18,12 +20,13 @@ from raypencil.peers import Counts, Hits, _command, _known, _snippets
 from raypencil.peers._figures import laws_svg, speed_svg
 from raypencil.peers._hunt import hunted, hunting_rays, reproduces, script, told_by
 from raypencil.peers._laws import LAWS, Threshold, explained, sentence, share_wrong, thresholds
-from raypencil.peers._measure import Measured, measure, of_answers
+from raypencil.peers._measure import Measured, machine, measure, of_answers
 from raypencil.peers._ours import Referee, Tracer
 from raypencil.peers._page import cell, page, paragraph
-from raypencil.peers._peer import Rays
+from raypencil.peers._peer import PROCESSOR, Rays
 from raypencil.peers._reduce import Case, Exact, exact, reduced, wrong_hit
 from raypencil.peers._worker import work
+from raypencil.peers.adapters import _card
 
 #: Möller and Trumbore's test with their threshold, as programs have it that lose small meshes. It stands alone.
 TEST = """v = np.array(V, float)
@@ -204,7 +207,12 @@ def test_rays_of_a_hunt_are_of_all_kinds_and_the_same_again() -> None:
     assert np.array_equal(rays, hunting_rays(ground, 120, 3)[0]) and not np.array_equal(rays, hunting_rays(ground, 120, 4)[0])
 
 
-@pytest.mark.parametrize("name", ["embree", "libigl", "trimesh", "vtk-static", "three"])
+def test_a_reproducer_can_be_written_for_each_other_program() -> None:
+    lines = {*_snippets.PYTHON, *_snippets.NODE}
+    assert [one.name for one in peers.every_peer() if one.registry != "here" and one.name not in lines] == []
+
+
+@pytest.mark.parametrize("name", ["embree", "libigl", "trimesh", "vtk-static", "mitsuba-llvm", "warp", "three", "jolt"])
 def test_the_lines_of_a_reproducer_ask_what_the_adapter_asks(name: str) -> None:
     one = peers.peer(name)
     try:
@@ -223,7 +231,7 @@ def measured(one: peers.Peer, **families: Counts | str) -> Measured:
     whole: dict[str, Counts | str] = {name: Counts(10) for name in raypencil.testing.hard_rays()}
     shares: dict[str, list[tuple[float, float | None]]] = {"scale": [(1.0, 0.0), (10.0, 0.5), (100.0, None)]}
     found = [Threshold("scale", "below", 0.0081, 1.0, 1.0)] if isinstance(one, Planted) else []
-    return Measured(one, "1.0", {**whole, **families}, shares, found, 1234.0)
+    return Measured(one, "1.0", "one machine", {**whole, **families}, shares, found, 1234.0)
 
 
 def test_a_paragraph_says_what_is_lost_and_what_to_do() -> None:
@@ -244,7 +252,7 @@ def test_the_page_has_a_row_and_a_paragraph_for_each() -> None:
     several = [measured(Planted(), edges=Counts(10, missed=2, wrong=2)), measured(Tracer())]
     text = page(several, {"embree": "pip install embreex"})
     assert "| Planted | 1.0 | 180 | 2 | 0 | 0 | **2** | 0 | 0 | 1,200 |" in text and "\n**Planted** (" in text
-    assert "* embree: not installed (pip install embreex)." in text and all(name in text for name in peers.LEFT_OUT)
+    assert "* embree: not asked here (pip install embreex)." in text and all(name in text for name in peers.LEFT_OUT)
     assert all(f"| {name} |" in text for name in raypencil.testing.hard_rays())
     for drawn in (laws_svg(several), speed_svg(several)):
         assert ElementTree.fromstring(drawn).tag.endswith("svg") and "Planted<" in drawn
@@ -260,7 +268,7 @@ def test_a_process_that_dies_is_followed_by_another() -> None:
 
 def test_what_a_peer_refuses_is_kept() -> None:
     answers: list[dict[str, Any]] = [{"refused": "Error: flat"}] * (len(raypencil.testing.hard_rays()) + len(LAWS) + 1)
-    one = of_answers(Tracer(), "1.0", answers)
+    one = of_answers(Tracer(), "1.0", "one machine", answers)
     assert one.total == Counts() and set(one.refused.values()) == {"Error: flat"} and one.speed is None
     assert all(share is None for shares in one.shares.values() for _, share in shares)
 
@@ -278,8 +286,48 @@ def test_the_command(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None
     # What is kept is not asked again, and the page has the same bytes.
     assert measure(["tracer"], kept, lambda line: pytest.fail(line))[0][0].total.wrong == 0
     assert _command.main(["table", "tracer", "--kept", str(kept)]) == 0 and text in capsys.readouterr().out
-    (kept / "tracer.json").write_text('{"jobs": [], "version": "", "answers": []}')
+    # What another machine kept says so, and is not asked here.
+    answers = json.loads((kept / "tracer.json").read_text())
+    assert answers["machine"] == machine()
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / "tracer.json").write_text(json.dumps({**answers, "machine": "a card, 16 cores"}))
+    assert _command.main(["table", "tracer", "--elsewhere", str(other)]) == 0
+    assert "On another machine (a card, 16 cores) were asked: raypencil's tracer." in capsys.readouterr().out
+    assert "On another machine" not in text
+    assert _command.main(["table", "tracer", "--elsewhere", str(tmp_path / "none")]) == 2 and "none` is no folder" in capsys.readouterr().err
+    # Answers to other questions are refused.
+    (kept / "tracer.json").write_text('{"jobs": [], "version": "", "machine": "", "answers": []}')
     assert _command.main(["table", "tracer", "--kept", str(kept)]) == 2
+
+
+def test_a_card_that_is_not_there_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Driver:
+        def __init__(self, cards: int) -> None:
+            self.cards = cards
+
+        def cuInit(self, flags: int) -> int:
+            return 0
+
+        def cuDeviceGet(self, into: Any, number: int) -> int:
+            return 0 if number < self.cards else 101
+
+        def cuDeviceGetName(self, name: Any, size: int, device: Any) -> int:
+            name.value = b"a card"
+            return 0
+
+    def missing(name: str) -> None:
+        raise OSError(name)
+
+    for library, words in ((missing, "no driver of one here"), (lambda name: Driver(0), "its driver finds none here")):
+        monkeypatch.setattr(ctypes, "CDLL", library)
+        _card.card.cache_clear()
+        with pytest.raises(peers.Unavailable, match=words):
+            peers.peer("warp-cuda").device()
+    monkeypatch.setattr(ctypes, "CDLL", lambda name: Driver(1))
+    assert peers.peer("mitsuba-cuda").device() == "a card" and machine("a card").startswith("a card, ")
+    _card.card.cache_clear()
+    assert peers.peer("tracer").device() == PROCESSOR and PROCESSOR not in machine()
 
 
 def test_what_is_lost_between_two_values_is_told_so() -> None:

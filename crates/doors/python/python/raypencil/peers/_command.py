@@ -28,6 +28,9 @@ def _parser() -> argparse.ArgumentParser:
     table.add_argument("peers", nargs="*", metavar="PEER", help="only these")
     table.add_argument("-o", "--output", type=Path, metavar="FILE.md", help="the page; its pictures go to figures/ beside it")
     table.add_argument("--kept", type=Path, metavar="DIR", help="keeps the answers; a peer that is in it is not asked again")
+    table.add_argument(
+        "--elsewhere", type=Path, metavar="DIR", help="what `--kept` kept on another machine; its peers are not asked here"
+    )
     hunt = commands.add_parser("hunt", help="find wrong rays of a peer on a mesh, and write reproducers")
     hunt.add_argument("peer", metavar="PEER")
     of = hunt.add_mutually_exclusive_group(required=True)
@@ -44,8 +47,9 @@ def _list() -> int:
     for one in every_peer():
         try:
             version = one.version()
+            one.device()
         except Unavailable as missing:
-            version = f"not installed: {missing}"
+            version = f"not here: {missing}"
         print(f"{one.name:16} {one.title:26} {version:12} {how_rounded(one)}")
     print("\nNot asked:")
     for name, why in LEFT_OUT.items():
@@ -53,9 +57,9 @@ def _list() -> int:
     return 0
 
 
-def _measured(names: Sequence[str], kept: Path | None) -> tuple[list[Measured], dict[str, str]]:
+def _measured(names: Sequence[str], kept: Path | None, elsewhere: Path | None = None) -> tuple[list[Measured], dict[str, str]]:
     with tempfile.TemporaryDirectory() as folder:
-        return measure(names, kept or Path(folder), lambda line: print(f"asking {line}", file=sys.stderr, flush=True))
+        return measure(names, kept or Path(folder), lambda line: print(f"asking {line}", file=sys.stderr, flush=True), elsewhere)
 
 
 def _ask(name: str) -> int:
@@ -71,12 +75,14 @@ def _ask(name: str) -> int:
     return 0 if one.total.wrong == 0 else 1
 
 
-def _table(names: Sequence[str], output: Path | None, kept: Path | None) -> int:
+def _table(names: Sequence[str], output: Path | None, kept: Path | None, elsewhere: Path | None) -> int:
     for name in names:
         peer(name)
-    measured, missing = _measured(names or [one.name for one in every_peer()], kept)
+    if elsewhere is not None and not elsewhere.is_dir():
+        raise RaypencilError(f"`--elsewhere {elsewhere}` is no folder")
+    measured, missing = _measured(names or [one.name for one in every_peer()], kept, elsewhere)
     if not measured:
-        raise RaypencilError("none of these peers is installed: `raypencil-peers list` says what would install them")
+        raise RaypencilError("none of these peers could be asked: `raypencil-peers list` says why")
     text = page(measured, missing)
     if output is None:
         print(text, end="")
@@ -99,7 +105,7 @@ def main(words: Sequence[str] | None = None) -> int:
         if given.command == "ask":
             return _ask(given.peer)
         if given.command == "table":
-            return _table(given.peers, given.output, given.kept)
+            return _table(given.peers, given.output, given.kept, given.elsewhere)
         from ._hunt import hunt
 
         return hunt(given.peer, given.mesh, given.terrains, given.seed, given.rays, given.most, given.output)

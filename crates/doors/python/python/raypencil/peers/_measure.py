@@ -12,12 +12,12 @@ from typing import Any
 from ..testing import hard_rays
 from ._known import peer
 from ._laws import LAWS, Threshold
-from ._peer import Peer, Unavailable
+from ._peer import PROCESSOR, Peer, Unavailable
 from ._question import Counts
 from ._worker import Job, work
 
 #: Rays of the measurement of speed, at most.
-_RAYS = 65536
+_RAYS = 1 << 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,6 +27,7 @@ class Measured:
     Attributes:
         peer: its adapter.
         version: of its package.
+        machine: on what it was measured, in words.
         families: the counts of each family of hard rays, or what the peer said when it refused the mesh.
         shares: for each law the values, and at each the share of wrong rays; ``None`` where the peer could not be asked.
         thresholds: where half of the rays become wrong.
@@ -35,6 +36,7 @@ class Measured:
 
     peer: Peer
     version: str
+    machine: str
     families: dict[str, Counts | str]
     shares: dict[str, list[tuple[float, float | None]]]
     thresholds: list[Threshold]
@@ -56,7 +58,7 @@ def jobs() -> list[Job]:
     return [{"family": name} for name in hard_rays()] + [{"law": name} for name in LAWS] + [{"speed": True, "rays": _RAYS}]
 
 
-def of_answers(one: Peer, version: str, answers: Sequence[dict[str, Any]]) -> Measured:
+def of_answers(one: Peer, version: str, machine: str, answers: Sequence[dict[str, Any]]) -> Measured:
     """The answers to :func:`jobs` as what was measured."""
     families: dict[str, Counts | str] = {}
     shares: dict[str, list[tuple[float, float | None]]] = {}
@@ -75,11 +77,11 @@ def of_answers(one: Peer, version: str, answers: Sequence[dict[str, Any]]) -> Me
                 found += [Threshold(**threshold) for threshold in answer["thresholds"]]
         elif answer is not None:
             speed = answer["rays"] / answer["seconds"]
-    return Measured(one, version, families, shares, found, speed)
+    return Measured(one, version, machine, families, shares, found, speed)
 
 
 def measure(
-    names: Sequence[str], kept: Path, tell: Callable[[str], None] = lambda line: None
+    names: Sequence[str], kept: Path, tell: Callable[[str], None] = lambda line: None, elsewhere: Path | None = None
 ) -> tuple[list[Measured], dict[str, str]]:
     """Asks peers all jobs, one after the other, each in a process of its own.
 
@@ -87,17 +89,20 @@ def measure(
         names: of peers.
         kept: a folder for what they answer; a peer whose answers are in it is not asked again.
         tell: is called with the name of each peer that is asked.
+        elsewhere: a folder that another machine kept; its peers are not asked here.
 
     Returns:
-        What was measured, and the peers that are not installed, each with what would install it.
+        What was measured, and the peers that could not be asked, each with the reason.
     """
     kept.mkdir(parents=True, exist_ok=True)
     measured, missing = [], {}
     for name in names:
         one, file = peer(name), kept / f"{name}.json"
+        if elsewhere is not None and (elsewhere / file.name).is_file():
+            file = elsewhere / file.name
         if not file.is_file():
             try:
-                version = one.version()
+                version, device = one.version(), one.device()
             except Unavailable as error:
                 missing[name] = str(error)
                 continue
@@ -106,18 +111,19 @@ def measure(
             if gone := [answer["unavailable"] for answer in answers if "unavailable" in answer]:
                 missing[name] = gone[0]
                 continue
-            data = {"version": version, "jobs": jobs(), "answers": answers}
+            data = {"version": version, "machine": machine(device), "jobs": jobs(), "answers": answers}
             file.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
         data = json.loads(file.read_text(encoding="utf-8"))
-        if data["jobs"] == jobs():
-            measured.append(of_answers(one, data["version"], data["answers"]))
+        if data["jobs"] == jobs() and "machine" in data:
+            measured.append(of_answers(one, data["version"], data["machine"], data["answers"]))
         else:
             missing[name] = f"{file} is of other questions: remove it"
     return measured, missing
 
 
-def machine() -> str:
-    """The machine of the speeds, in words."""
+def machine(device: str = PROCESSOR) -> str:
+    """A machine of speeds, in words."""
     import os
 
-    return f"{os.cpu_count()} cores, {platform.machine()}, Python {platform.python_version()}"
+    card = "" if device == PROCESSOR else f"{device}, "
+    return f"{card}{os.cpu_count()} cores, {platform.machine()}, Python {platform.python_version()}"

@@ -132,18 +132,19 @@ def page(measured: Sequence[Measured], missing: Mapping[str, str]) -> str:
     others = [one for one in measured if one.peer.registry != "here"]
     packages = {one.peer.package for one in others}
     ours = [one for one in measured if one.peer.registry == "here"]
+    here = machine()
     lines = [
         "# Other programs' answers to hard rays",
         "",
         # A test of the documents reads it.
         "<!-- stands on",
-        'made_by = "raypencil-peers table -o docs/peers.md"',
-        'measured = "other people\'s programs at the versions of the table, asked on one machine"',
+        'made_by = "raypencil-peers table -o docs/peers.md --elsewhere reference/peers/card"',
+        'measured = "other people\'s programs at the versions of the table, asked on the machines that the page names"',
         'shows = ["docs/figures/peers-laws.svg", "docs/figures/peers-speed.svg"]',
         "-->",
         "",
         f"{len(others)} ways to ask {len(packages)} packages the rays of `data/rays/hard` ([what they are](hard-rays.md)). Made by"
-        " `raypencil-peers table -o docs/peers.md`; `raypencil-peers ask NAME` shows one of them.",
+        " `raypencil-peers table`, as the page's end has it; `raypencil-peers ask NAME` shows one of them.",
         "",
         "Every program is asked what it can read: mesh and rays are rounded to its types first, and the truth is that of the rounded"
         " question, by `raypencil cast`, which is exact. So what is counted is no fault of the input. Rays with a t_min are left out,"
@@ -156,9 +157,9 @@ def page(measured: Sequence[Measured], missing: Mapping[str, str]) -> str:
         "",
         *_table(measured),
         "",
-        f"Rays a second: on 8192 faces, in the same run, on a machine of {machine()}; threads as each program takes them by itself,"
+        f"Rays a second: on 8192 faces, in the same run, on a machine of {here}; threads as each program takes them by itself,"
         " and through Python or Node where that is how it is called. It says what a call costs, not what an engine can do. The best of"
-        " five runs; read the power of ten, for other work on the machine makes some rows slower.",
+        " five runs; read the power of ten, for other work on the machine makes some rows slower." + _elsewhere(measured, here),
         "",
         f"![Wrong rays against rays a second]({SPEED_FIGURE})",
         "",
@@ -192,21 +193,31 @@ def page(measured: Sequence[Measured], missing: Mapping[str, str]) -> str:
         "## Who is not asked",
         "",
         *[f"* {name}: {why}." for name, why in LEFT_OUT.items()],
-        *[f"* {name}: not installed ({why})." for name, why in missing.items()],
+        *[f"* {name}: not asked here ({why})." for name, why in missing.items()],
         "",
         "## Make it again",
         "",
         "```sh",
         "reference/peers/install.sh ENV                             # an environment, and the packages of npm",
-        "RAYPENCIL_PEERS_NODE=ENV/node ENV/bin/raypencil-peers table -o docs/peers.md",
+        "RAYPENCIL_PEERS_NODE=ENV/node ENV/bin/raypencil-peers table -o docs/peers.md --elsewhere reference/peers/card",
         "```",
     ]
     return "\n".join(lines) + "\n"
 
 
+def _elsewhere(measured: Sequence[Measured], here: str) -> str:
+    """Which programs were asked on another machine, one sentence for each machine."""
+    places: dict[str, list[str]] = {}
+    for one in measured:
+        if one.machine != here:
+            places.setdefault(one.machine, []).append(one.peer.title)
+    return "".join(f" On another machine ({place}) were asked: {'; '.join(titles)}." for place, titles in places.items())
+
+
 def _cost(ours: Sequence[Measured], others: Sequence[Measured]) -> list[str]:
     """What being right costs in time."""
-    fastest = max((one for one in others if one.speed), key=lambda one: one.speed or 0, default=None)
+    # On the same machine only: a graphics card answers another question.
+    fastest = max((one for one in others if one.speed and one.machine == ours[0].machine), key=lambda one: one.speed or 0, default=None)
     if fastest is None:
         return []
     said = [

@@ -19,6 +19,9 @@ from .._mesh import Mesh
 Rays = NDArray[np.float64]
 Built = Any
 
+#: What most peers compute on.
+PROCESSOR = "processor"
+
 
 class Unavailable(ImportError):
     """A peer that is not installed: the message says what would install it."""
@@ -119,6 +122,14 @@ class Peer:
             return version_of(self.package)
         except PackageNotFoundError:
             raise Unavailable(f"{self.package} is not installed: pip install {self.package}") from None
+
+    def device(self) -> str:
+        """What it computes on, in words.
+
+        Raises:
+            Unavailable: this machine has none.
+        """
+        return PROCESSOR
 
     def build(self, mesh: Mesh) -> Built:
         """What it makes of a mesh before it is asked.

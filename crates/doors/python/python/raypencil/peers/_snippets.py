@@ -32,6 +32,18 @@ p["vertex_positions"] = np.ravel(np.array(V, np.float32)); p["faces"] = np.ravel
 found = mi.load_dict({{"type": "scene", "mesh": mesh}}).ray_intersect_preliminary(mi.Ray3f(mi.Point3f(o), mi.Vector3f(d)){more})
 face, t = (int({index}), float({at})) if {valid} else (-1, float("inf"))"""
 
+_WARP = """import warp as wp
+@wp.kernel
+def first(mesh: wp.uint64, o: wp.vec3, d: wp.vec3, face: wp.array(dtype=int), t: wp.array(dtype=float)):
+    q = wp.mesh_query_ray(mesh, o, d, 3.0e38)
+    if q.result:
+        face[0] = q.face; t[0] = q.t
+wp.set_device("{place}")
+mesh = wp.Mesh(wp.array(V, dtype=wp.vec3), wp.array(np.ravel(F), dtype=wp.int32))
+face, t = wp.full(1, -1, dtype=int), wp.full(1, float("inf"), dtype=float)
+wp.launch(first, dim=1, inputs=[mesh.id, wp.vec3(*o), wp.vec3(*d), face, t])
+face, t = int(face.numpy()[0]), float(t.numpy()[0])"""
+
 _TRIMESH = """import trimesh
 from trimesh.ray.{module} import RayMeshIntersector
 rays = RayMeshIntersector(trimesh.Trimesh(V, F, process=False, validate=False))
@@ -67,6 +79,9 @@ face = int(found["primitive_ids"].numpy()[0]) if np.isfinite(t) else -1""",
     "mitsuba-llvm": _MITSUBA.format(
         variant="llvm_ad_rgb", more="", index="found.prim_index[0]", at="found.t[0]", valid="found.is_valid()[0]"
     ),
+    "mitsuba-cuda": _MITSUBA.format(
+        variant="cuda_ad_rgb", more="", index="found.prim_index[0]", at="found.t[0]", valid="found.is_valid()[0]"
+    ),
     "pcu": """import point_cloud_utils as pcu
 rays = pcu.RayMeshIntersector(np.array(V, np.float32), np.array(F, np.int32))
 face, _, t = rays.intersect_rays(np.array([o], np.float32), np.array([d], np.float32))
@@ -93,17 +108,8 @@ face, t = found[0][:2] if found else (-1, float("inf"))""",
     "vtk-tolerance": _VTK.format(kind="vtkStaticCellLocator", tolerance="1e-12 * np.ptp(V, axis=0).max()"),
     "vtk-bsp": _VTK.format(kind="vtkModifiedBSPTree", tolerance="0.0"),
     "vtk-cell-tree": _VTK.format(kind="vtkCellTreeLocator", tolerance="0.0"),
-    "warp": """import warp as wp
-@wp.kernel
-def first(mesh: wp.uint64, o: wp.vec3, d: wp.vec3, face: wp.array(dtype=int), t: wp.array(dtype=float)):
-    q = wp.mesh_query_ray(mesh, o, d, 3.0e38)
-    if q.result:
-        face[0] = q.face; t[0] = q.t
-wp.set_device("cpu")
-mesh = wp.Mesh(wp.array(V, dtype=wp.vec3), wp.array(np.ravel(F), dtype=wp.int32))
-face, t = wp.full(1, -1, dtype=int), wp.full(1, float("inf"), dtype=float)
-wp.launch(first, dim=1, inputs=[mesh.id, wp.vec3(*o), wp.vec3(*d), face, t])
-face, t = int(face.numpy()[0]), float(t.numpy()[0])""",
+    "warp": _WARP.format(place="cpu"),
+    "warp-cuda": _WARP.format(place="cuda:0"),
     "fcpw": """import fcpw
 scene = fcpw.scene_3D(); scene.set_object_count(1)
 scene.set_object_vertices(np.asfortranarray(V, np.float32), 0)
@@ -193,6 +199,26 @@ const xyz = ([x, y, z]) => ({ x, y, z });
 const ray = new RAPIER.Ray(xyz(o), xyz(d));
 const found = world.createCollider(mesh).castRayAndGetNormal(ray, 3.4e38, false);
 const [face, t] = [-1, found ? found.timeOfImpact : Infinity];""",
+    "jolt": """import load from "jolt-physics";
+const Jolt = await load();
+const corners = new Jolt.VertexList(), triangles = new Jolt.IndexedTriangleList();
+for (const v of V) corners.push_back(new Jolt.Float3(...v));
+for (const f of F) triangles.push_back(new Jolt.IndexedTriangle(...f, 0));
+const shape = new Jolt.MeshShapeSettings(corners, triangles, new Jolt.PhysicsMaterialList()).Create().Get();
+const settings = new Jolt.JoltSettings(), pairs = new Jolt.ObjectLayerPairFilterTable(1);
+const broad = new Jolt.BroadPhaseLayerInterfaceTable(1, 1);
+broad.MapObjectToBroadPhaseLayer(0, new Jolt.BroadPhaseLayer(0));
+settings.mObjectLayerPairFilter = pairs; settings.mBroadPhaseLayerInterface = broad;
+settings.mObjectVsBroadPhaseLayerFilter = new Jolt.ObjectVsBroadPhaseLayerFilterTable(broad, 1, pairs, 1);
+const physics = new Jolt.JoltInterface(settings).GetPhysicsSystem();
+const body = new Jolt.BodyCreationSettings(shape, new Jolt.RVec3(0, 0, 0), new Jolt.Quat(0, 0, 0, 1), Jolt.EMotionType_Static, 0);
+physics.GetBodyInterface().CreateAndAddBody(body, Jolt.EActivation_DontActivate);
+const how = new Jolt.RayCastSettings(); how.mBackFaceModeTriangles = Jolt.EBackFaceMode_CollideWithBackFaces;
+const filters = [new Jolt.BroadPhaseLayerFilter(), new Jolt.ObjectLayerFilter(), new Jolt.BodyFilter(), new Jolt.ShapeFilter()];
+const ray = new Jolt.RRayCast(new Jolt.RVec3(...o), new Jolt.Vec3(...e.map((x, k) => x - o[k])));
+const found = new Jolt.CastRayClosestHitCollisionCollector();
+physics.GetNarrowPhaseQuery().CastRay(ray, how, found, ...filters);
+const [face, t] = [-1, found.HadHit() ? found.mHit.mFraction * T : Infinity];""",
     "cannon-es": """import * as CANNON from "cannon-es";
 const world = new CANNON.World();
 world.addBody(new CANNON.Body({ mass: 0, shape: new CANNON.Trimesh(V.flat(), F.flat()) }));

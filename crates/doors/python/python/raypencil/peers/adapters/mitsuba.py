@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..._mesh import Mesh
 from .._peer import Built, Hits, Peer, Rays, hits, need, single
+from ._card import card
 
 
 class MitsubaScalar(Peer):
@@ -69,3 +70,12 @@ class MitsubaLlvm(MitsubaScalar):
         mi, scene = self.build(mesh)
         (many,) = self.asked(mi, rays)
         return np.array(scene.ray_test(many), dtype=bool)
+
+
+class MitsubaCuda(MitsubaLlvm):
+    """The same on a graphics card, where OptiX finds the hits. All but a card's driver comes with the package."""
+
+    name, title, variant = "mitsuba-cuda", "Mitsuba, cuda_ad_rgb", "cuda_ad_rgb"
+
+    def device(self) -> str:
+        return card()

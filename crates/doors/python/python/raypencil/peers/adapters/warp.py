@@ -1,4 +1,4 @@
-"""NVIDIA Warp, on the processor."""
+"""NVIDIA Warp, on the processor and on a graphics card."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from ..._mesh import Mesh
 from .._peer import Built, Hits, Peer, Rays, hits, need, single
+from ._card import card
 
 
 @functools.cache
@@ -23,21 +24,31 @@ class Warp(Peer):
 
     name, title, package = "warp", "Warp, processor", "warp-lang"
     arithmetic = mesh_type = rays_type = "f32"
-    device = "cpu"
+    place = "cpu"
 
     def build(self, mesh: Mesh) -> Built:
         kernel, wp = _kernel(), need("warp", self.package)
-        points = wp.array(single(mesh.vertices), dtype=wp.vec3, device=self.device)
-        corners = wp.array(mesh.faces.astype(np.int32).ravel(), dtype=wp.int32, device=self.device)
+        points = wp.array(single(mesh.vertices), dtype=wp.vec3, device=self.place)
+        corners = wp.array(mesh.faces.astype(np.int32).ravel(), dtype=wp.int32, device=self.place)
         return wp, kernel, wp.Mesh(points=points, indices=corners)
 
     def shoot(self, built: Built, rays: Rays) -> Hits:
         wp, kernel, mesh = built
         # An infinite end makes it answer nothing, so the largest number stands for it.
         ends = np.minimum(rays[:, 7], float(np.finfo(np.float32).max))
-        given = [wp.array(single(rays[:, a:b]), dtype=wp.vec3, device=self.device) for a, b in ((0, 3), (3, 6))]
-        far = wp.array(single(ends), dtype=wp.float32, device=self.device)
-        face = wp.full(len(rays), -1, dtype=wp.int32, device=self.device)
-        t = wp.zeros(len(rays), dtype=wp.float32, device=self.device)
-        wp.launch(kernel, dim=len(rays), inputs=[mesh.id, *given, far, face, t], device=self.device)
+        given = [wp.array(single(rays[:, a:b]), dtype=wp.vec3, device=self.place) for a, b in ((0, 3), (3, 6))]
+        far = wp.array(single(ends), dtype=wp.float32, device=self.place)
+        face = wp.full(len(rays), -1, dtype=wp.int32, device=self.place)
+        t = wp.zeros(len(rays), dtype=wp.float32, device=self.place)
+        wp.launch(kernel, dim=len(rays), inputs=[mesh.id, *given, far, face, t], device=self.place)
         return hits(face.numpy(), t.numpy(), rays)
+
+
+class WarpCuda(Warp):
+    """The same kernel on a graphics card. The time of a call includes the way of the rays to the card and of the hits back."""
+
+    name, title = "warp-cuda", "Warp, graphics card"
+    place = "cuda:0"
+
+    def device(self) -> str:
+        return card()
