@@ -56,8 +56,8 @@ pub(crate) struct Check {
     #[command(flatten)]
     pub(crate) declared: DeclaredArguments,
 
-    /// Compare every answer of the pack with the referee's; without it all of at most 50,000 answers, of more 6,905 that are drawn,
-    /// and each by which a ray is wrong. A published pack is known by its digest.
+    /// Compare every answer of a pack of sensors with the referee's; without it all of at most 50,000 answers, of more 6,905 that are drawn,
+    /// and each by which a ray is wrong. A published pack is known by its digest. The answers of a pack of rays are all computed again.
     #[arg(long)]
     pub(crate) verify: bool,
 

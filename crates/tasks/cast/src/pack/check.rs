@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use raypencil_files::{FileError, RayArray, quoted, ray_rows};
+use raypencil_files::{Fault, FileError, RayArray, quoted, ray_rows};
 use raypencil_mesh_io::is_cloud_file;
 use raypencil_referee::ExactCast;
 use raypencil_scene::{Precision, Progress};
@@ -45,7 +45,7 @@ impl RayPackChecked {
     /// all that the cloud says of it.
     pub fn passes(&self) -> bool {
         self.comparison.passes()
-            && self.cloud.as_ref().is_none_or(|cloud| cloud.strays.is_empty() && cloud.wrong_keys == 0)
+            && self.cloud.as_ref().is_none_or(|cloud| cloud.strays.is_empty() && cloud.wrong_keys.is_empty())
     }
 
     /// The command that shows everything about the ray with this index.
@@ -81,7 +81,7 @@ impl RayPackChecked {
 /// ```
 ///
 /// # Errors
-/// A pack whose files are not those that it lists; an array that cannot be read or has another shape; a candidate that
+/// A pack whose files are not those that it lists, or whose first hits are not the exact ones; an array that cannot be read or has another shape; a candidate that
 /// does not say which rays hit; a cloud that cannot be read, or whose points cannot be laid on the rays.
 pub fn check_ray_pack(
     pack: &Path,
@@ -112,6 +112,7 @@ pub fn check_ray_pack(
         explain(&exact, &mesh, (&rays.rays, sides), stated, &lengths, precision, &wrong)
     });
     let answers = cast_with(&exact, &rays.rays, sides, Questions::default(), progress);
+    refuse_other_answers(pack, &rays, &Stated::of(&answers))?;
     let name = candidate.file_name().map_or_else(|| ".".into(), |name| name.to_string_lossy().into_owned());
     let cloud = case.map(|case| case.facts);
     let of_keys = cloud.as_ref().and_then(|cloud| cloud.keys_why.clone());
@@ -131,4 +132,33 @@ pub fn check_ray_pack(
         answers,
         stated,
     })
+}
+
+/// Refuses a pack whose own first hits are not the exact ones: anyone can change an answer and write its digest anew.
+fn refuse_other_answers(pack: &Path, rays: &RayArray, exact: &Stated) -> Result<(), FileError> {
+    let kept = read_candidate(pack, &rays.shape, CandidateConventions::default())?;
+    let bits = |numbers: &Option<Vec<f64>>| -> Option<Vec<u64>> {
+        numbers.as_ref().map(|numbers| numbers.iter().map(|number| number.to_bits()).collect())
+    };
+    let faces = |stated: &Stated| -> Option<Vec<u64>> {
+        let number = |face: &Option<raypencil_scene::FaceId>| face.map_or(u64::MAX, |face| u64::from(face.0));
+        stated.face.as_ref().map(|faces| faces.iter().map(number).collect())
+    };
+    let pairs = [
+        ("face.npy", faces(&kept), faces(exact)),
+        ("t.npy", bits(&kept.t), bits(&exact.t)),
+        ("range.npy", bits(&kept.range), bits(&exact.range)),
+    ];
+    for (name, kept, exact) in pairs {
+        let (Some(kept), Some(exact)) = (kept, exact) else { continue };
+        if let Some(ray) = kept.iter().zip(&exact).position(|(kept, exact)| kept != exact) {
+            let fault = Fault::new(
+                format!("ray {ray}"),
+                "another answer than the exact one",
+                "the answers that `raypencil pack --rays` writes: make the pack again",
+            );
+            return Err(FileError::Array(fault.in_file(&pack.join(name))));
+        }
+    }
+    Ok(())
 }

@@ -1,6 +1,6 @@
 //! Reads a pack of rays.
 
-use std::path::Path;
+use std::path::{Component, Path};
 
 use raypencil_files::{Fault, FileError, RayArray, bytes, file_sha256_hex, hex_digits, read_rays, sha256};
 use raypencil_mesh_io::load_triangles;
@@ -86,18 +86,20 @@ impl RayPack {
             questions.extend(["time.npy", "elevation.npy"].into_iter().filter(|name| listed(name)));
         }
         for question in questions {
-            let Some(listed) = document.files.iter().find(|file| file.path == question) else {
+            if !listed(question) {
                 return Err(fault(&path, "files", format!("no {question}"), "its path and SHA-256"));
-            };
-            let file = folder.join(question);
+            }
+        }
+        // The answers too: who takes them for the truth relies on it.
+        for PackFile { path: name, sha256 } in &document.files {
+            let is_inside = Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
+            if !is_inside {
+                return Err(fault(&path, "files", name.as_str(), "paths below the pack's folder"));
+            }
+            let file = folder.join(name);
             let (_, found) = file_sha256_hex(&file).map_err(|error| FileError::io(&file, "read", error))?;
-            if found != listed.sha256 {
-                return Err(fault(
-                    &file,
-                    "SHA-256",
-                    found,
-                    format!("{}, as {PACK_NAME} says", listed.sha256),
-                ));
+            if found != *sha256 {
+                return Err(fault(&file, "SHA-256", found, format!("{sha256}, as {PACK_NAME} says")));
             }
         }
         let rays = read_rays(&folder.join("rays.npy"))?;

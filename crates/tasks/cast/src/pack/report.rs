@@ -2,12 +2,12 @@
 
 use raypencil_judge::Class;
 use raypencil_pack::{BundleFindings, CheckFindings, ItemFindings, PackForm, PackLabel, WorstOf, WrongRay};
-use raypencil_report::{DefectLine, Document, counted};
+use raypencil_report::{DefectLine, Document, count, counted};
 use raypencil_scene::{FaceId, Reading};
 use serde_json::{Map, Value, json};
 
 use super::check::RayPackChecked;
-use crate::comparison::{Wrong, wrong_text};
+use crate::comparison::{RayVerdict, Wrong, wrong_text};
 use crate::page::{CastPage, ComparedHits};
 use crate::text::counts_text;
 
@@ -16,6 +16,12 @@ const MAX_LISTED: usize = 12;
 
 /// Key of the first hits, beside those of the values.
 const HIT: &str = "hit";
+
+/// Key of the fields of a cloud that tell the ray of a point.
+const KEYS: &str = "ring_channel_time";
+
+/// Key of points that belong to no ray, or to one that has another.
+const STRAYS: &str = "points";
 
 impl RayPackChecked {
     /// The check for a screen and for programs.
@@ -61,7 +67,7 @@ impl RayPackChecked {
             totals: bundle.items.clone(),
             worst: bundle.listed.iter().map(|wrong| wrong.line.clone()).collect(),
             coarseness: None,
-            headline: None,
+            headline: self.headline(),
             why: self.why.clone(),
             notes: self.notes(),
             sharpness: None,
@@ -100,10 +106,10 @@ impl RayPackChecked {
                 counted(invented, "point", "points")
             ));
         }
-        if cloud.wrong_keys > 0 {
+        if !cloud.wrong_keys.is_empty() {
             notes.push(format!(
                 "Ring, channel or time of {} are those of another ray.",
-                counted(cloud.wrong_keys as u64, "point", "points")
+                counted(cloud.wrong_keys.len() as u64, "point", "points")
             ));
         }
         if let Some(first) = cloud.strays.first() {
@@ -115,18 +121,60 @@ impl RayPackChecked {
         notes
     }
 
+    /// What is wrong with a cloud, if it is more than wrong rays: a point of no ray is no ray.
+    fn headline(&self) -> Option<String> {
+        let cloud = self.cloud.as_ref()?;
+        let wrong = self.comparison.counts().wrong;
+        let rays = count(self.comparison.verdicts.len() as u64);
+        let of_rays = match wrong {
+            0 => None,
+            1 => Some(format!("1 of {rays} rays is wrong")),
+            more => Some(format!("{} of {rays} rays are wrong", count(more))),
+        };
+        let keys = cloud.wrong_keys.len() as u64;
+        let of_keys = (keys > 0).then(|| {
+            format!("ring, channel or time of {} are those of another ray", counted(keys, "point", "points"))
+        });
+        let strays = cloud.strays.len() as u64;
+        let of_strays = (strays > 0).then(|| {
+            let are = if strays == 1 { "is" } else { "are" };
+            format!("{} {are} of no ray, or of one that has another", counted(strays, "point", "points"))
+        });
+        (keys + strays > 0).then(|| {
+            let said: Vec<String> = [of_rays, of_keys, of_strays].into_iter().flatten().collect();
+            format!("{}.", capital(&said.join("; ")))
+        })
+    }
+
     /// The rays as a bundle of this name.
     pub fn bundle(&self, name: &str) -> BundleFindings {
         let counts = self.comparison.counts();
-        let mut by_class = [0; Class::COUNT];
-        by_class[Class::Agree as usize] = counts.same - counts.ties;
-        by_class[Class::Tie as usize] = counts.ties;
-        by_class[Class::Rounding as usize] = counts.rounding;
-        by_class[Class::Defect as usize] = counts.wrong;
+        let (keys, strays) = match &self.cloud {
+            Some(cloud) => (cloud.wrong_keys.as_slice(), cloud.strays.as_slice()),
+            None => (&[][..], &[][..]),
+        };
+        let mut of_rays = [0; Class::COUNT];
+        of_rays[Class::Agree as usize] = counts.same - counts.ties;
+        of_rays[Class::Tie as usize] = counts.ties;
+        of_rays[Class::Rounding as usize] = counts.rounding;
+        of_rays[Class::Defect as usize] = counts.wrong;
+        let mut by_class = of_rays;
+        for &ray in keys {
+            let class = match &self.comparison.verdicts[ray] {
+                RayVerdict::Same { is_tie: false } => Class::Agree,
+                RayVerdict::Same { is_tie: true } => Class::Tie,
+                RayVerdict::Rounding { .. } => Class::Rounding,
+                RayVerdict::Wrong(_) => continue,
+            };
+            by_class[class as usize] -= 1;
+            by_class[Class::Defect as usize] += 1;
+        }
+        // Points that are too many stand beside the rays.
+        by_class[Class::Defect as usize] += strays.len() as u64;
         // A ray with a wrong value has the right hit.
         let is_of_values = |(_, wrong): &(usize, Wrong)| matches!(wrong, Wrong::Value { .. });
         let wrong_values = self.comparison.wrong().filter(is_of_values).count() as u64;
-        let mut of_hits = by_class;
+        let mut of_hits = of_rays;
         of_hits[Class::Defect as usize] -= wrong_values;
         of_hits[Class::Agree as usize] += wrong_values;
         let hits = ItemFindings {
@@ -161,7 +209,22 @@ impl RayPackChecked {
                 ..hits.clone()
             }
         });
-        let listed = self.comparison.wrong().take(MAX_LISTED);
+        // What else a cloud states: the ray of each point.
+        let of_cloud = |key: &str, name: &str, agree: u64, wrong: u64| {
+            let mut by_class = [0; Class::COUNT];
+            by_class[Class::Agree as usize] = agree;
+            by_class[Class::Defect as usize] = wrong;
+            ItemFindings { key: key.into(), name: name.into(), by_class, ..hits.clone() }
+        };
+        let points = self.cloud.as_ref().map_or(0, |cloud| cloud.points - strays.len()) as u64;
+        let of_keys = (!keys.is_empty())
+            .then(|| of_cloud(KEYS, "ring, channel, time", points - keys.len() as u64, keys.len() as u64));
+        let of_strays = (!strays.is_empty())
+            .then(|| of_cloud(STRAYS, "points of one ray each", points, strays.len() as u64));
+        let listed = self.comparison.wrong().map(|(index, wrong)| self.wrong_ray(name, index, &wrong));
+        let listed = listed.take(MAX_LISTED);
+        let listed = listed.chain(keys.iter().take(MAX_LISTED).map(|ray| self.wrong_key(name, *ray)));
+        let listed = listed.chain(strays.iter().take(MAX_LISTED).map(|point| self.stray(name, *point)));
         BundleFindings {
             name: name.into(),
             hits_anything: self.comparison.met > 0,
@@ -169,9 +232,55 @@ impl RayPackChecked {
             by_class,
             not_compared: 0,
             ruled: counts.rounding + counts.wrong,
-            items: std::iter::once(hits.clone()).chain(values).collect(),
-            listed: listed.map(|(index, wrong)| self.wrong_ray(name, index, &wrong)).collect(),
+            items: std::iter::once(hits.clone()).chain(values).chain(of_keys).chain(of_strays).collect(),
+            listed: listed.collect(),
             why: self.why.clone(),
+        }
+    }
+
+    /// A ray whose point has the ring, channel or time of another.
+    fn wrong_key(&self, bundle: &str, ray: usize) -> WrongRay {
+        let words = "ring, channel or time of its point are those of another ray";
+        let place = format!("{bundle} {ray}");
+        self.wrong_point(bundle, ray, (KEYS, "ring, channel, time"), (place, words), self.ray_command(ray))
+    }
+
+    /// A point of no ray, or of one that has another.
+    fn stray(&self, bundle: &str, point: usize) -> WrongRay {
+        let words = "is of no ray, or of one that has another point";
+        self.wrong_point(bundle, point, (STRAYS, "point"), (format!("point {point}"), words), String::new())
+    }
+
+    fn wrong_point(
+        &self,
+        bundle: &str,
+        index: usize,
+        (key, quantity): (&str, &str),
+        (place, words): (String, &str),
+        command: String,
+    ) -> WrongRay {
+        WrongRay {
+            key: key.into(),
+            data: json!({
+                "bundle": bundle,
+                "ray": [index],
+                "quantity": key,
+                "said": [{ "who": self.name, "value": place }],
+                "true": Value::Null,
+                "difference": Value::Null,
+                "difference_unit": "",
+                "ratio": Value::Null,
+                "margin": Value::Null,
+                "what": words,
+                "command": command,
+            }),
+            line: DefectLine {
+                place,
+                quantity: quantity.into(),
+                words: words.into(),
+                command,
+                ..DefectLine::default()
+            },
         }
     }
 
@@ -213,6 +322,14 @@ impl RayPackChecked {
             },
         }
     }
+}
+
+/// The same words as the beginning of a sentence.
+fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    letters
+        .next()
+        .map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
 }
 
 /// The stated answer, and the exact one where there is one.

@@ -336,6 +336,17 @@ fn rings_and_orders_are_told() {
     let file = trial.write(&rows, Fields::None, [120, 16]);
     let checked = trial.check(&file, CandidateConventions::default()).expect("a check");
     assert!(checked.passes(), "{:?}", checked.why);
+    // Rows and points of a row from the last to the first.
+    for (words, ray) in [
+        (
+            "rows of points run from the last to the first",
+            (|k| (119 - k / 16) * 16 + k % 16) as fn(usize) -> usize,
+        ),
+        ("all points run from the last to the first", |k| 1919 - k),
+    ] {
+        let other: Vec<Point> = (0..right.len()).map(|k| right[ray(k)]).collect();
+        trial.expect_why(&other, Fields::None, mesh, words);
+    }
     // The same rows in a file that claims no order.
     let file = trial.write(&rows, Fields::None, [right.len(), 1]);
     let why = trial.check(&file, CandidateConventions::default()).expect("a check").why;
@@ -511,7 +522,22 @@ fn missing_invented_and_stray_points_are_counted() {
     assert_eq!(checked.comparison.counts().wrong, 0);
     assert!(!checked.passes());
     assert_eq!(checked.cloud.as_ref().expect("a cloud").strays.len(), 2);
-    assert!(checked.document().screen().contains("2 points of no ray"), "{}", checked.document().screen());
+    let document = checked.document();
+    assert!(
+        document.screen().contains("✗ 2 points are of no ray, or of one that has another."),
+        "{}",
+        document.screen()
+    );
+    assert_eq!(document.verdict, "defects");
+    let junit = document.junit().expect("test results");
+    assert!(
+        junit.contains("failures=\"1\"") && junit.contains("points of one ray each is wrong on 2 of"),
+        "{junit}"
+    );
+    // Rings of other rays are no pass either, on the screen and for programs.
+    let rings: Vec<Point> = right.iter().map(|one| Point { ring: (one.ring + 1) % 16, ..*one }).collect();
+    let document = trial.judge(&rings, Fields::Keys, CloudFrame::Mesh).document();
+    assert_eq!(document.verdict, "defects");
     // Zeros for misses.
     let zeros: Vec<Point> = right
         .iter()
@@ -525,6 +551,83 @@ fn missing_invented_and_stray_points_are_counted() {
             .expect("a check")
             .passes()
     );
+}
+
+/// A grid that hits everywhere: a plain list of its points has no order that could be wrong.
+#[test]
+fn a_list_without_an_order_is_held_to_none_and_an_image_is() {
+    let few = Spinning { steps: 16, azimuth_start_deg: 60.0, azimuth_step_deg: 2.0, ..head() };
+    let level = Pose { position: DVec3::new(1.0, 0.5, 1.5), ..Pose::IDENTITY };
+    let trial = Trial::new(&few, &Mounting::Fixed(level));
+    let right = points(&trial.set, CloudFrame::Mesh);
+    assert!(right.iter().all(|one| one.place.is_finite()));
+    let count = right.len();
+    let moved = |by: fn(usize) -> usize| -> Vec<Point> { (0..count).map(|k| right[by(k)]).collect() };
+    let judged = |points: &[Point], size| {
+        let file = trial.write(points, Fields::None, size);
+        trial.check(&file, CandidateConventions::default()).expect("a check")
+    };
+    // 37 and 256 have no common divisor.
+    let shuffled = moved(|k| k * 37 % 256);
+    let checked = judged(&shuffled, [count, 1]);
+    assert!(checked.passes());
+    assert_eq!(checked.cloud.as_ref().expect("a cloud").assigned, "by direction");
+    assert_eq!(judged(&right, [count, 1]).cloud.expect("a cloud").assigned, "by the order of the points");
+    let checked = judged(&shuffled, [16, 16]);
+    assert!(!checked.passes());
+    let why = checked.why.expect("a reason");
+    assert!(why.contains("points are not in the order of the rays"), "{why}");
+    // 16 channels and 16 sequences: rows of either are right.
+    assert!(judged(&right, [16, 16]).passes());
+    let by_channel = judged(&moved(|k| k % 16 * 16 + k / 16), [16, 16]);
+    assert!(by_channel.passes(), "{:?}", by_channel.why);
+    let why = judged(&moved(|k| (15 - k / 16) * 16 + k % 16), [16, 16]).why.expect("a reason");
+    assert!(why.contains("from the last to the first"), "{why}");
+    // A mistake of the points themselves is no question of their order.
+    let longer: Vec<Point> = right.iter().map(|one| Point { place: one.place + DVec3::Z, ..*one }).collect();
+    let checked = judged(&longer, [count, 1]);
+    assert!(!checked.passes());
+}
+
+#[test]
+fn fields_of_other_drivers_are_read_as_they_mean_them() {
+    let trial = Trial::new(&head(), &still());
+    let right = points(&trial.set, CloudFrame::Mesh);
+    let right: Vec<Point> = right.into_iter().filter(|one| one.place.is_finite()).collect();
+    let judged = |fields: &str, of: &dyn Fn(&Point) -> String| {
+        let mut text = format!(
+            "VERSION 0.7\nFIELDS x y z {fields}\nSIZE 8 8 8{}\nTYPE F F F{}\nWIDTH {count}\nHEIGHT 1\nPOINTS {count}\nDATA ascii\n",
+            " 8".repeat(fields.split(' ').count()),
+            " F".repeat(fields.split(' ').count()),
+            count = right.len(),
+        );
+        for (k, point) in right.iter().enumerate() {
+            let [x, y, z] = right[(k + 7) % right.len()].place.to_array();
+            let _ = point;
+            text += &format!("{x} {y} {z} {}\n", of(&right[(k + 7) % right.len()]));
+        }
+        let file = trial.folder.path().join("driver.pcd");
+        std::fs::write(&file, text).expect("a file");
+        trial.check(&file, CandidateConventions::default()).expect("a check")
+    };
+    let start = trial.set.times.as_ref().expect("times").iter().copied().fold(f64::INFINITY, f64::min);
+    let channel = |point: &Point| {
+        let elevations = trial.set.elevations_deg.as_ref().expect("a head");
+        let rank = |channel: usize| elevations.iter().filter(|other| **other < elevations[channel]).count();
+        (0..16).find(|channel| rank(*channel) == usize::from(point.ring)).expect("a channel")
+    };
+    // Ouster: rings from above, whole nanoseconds of the scan.
+    let ouster = judged("ring t", &|one| format!("{} {}", 15 - one.ring, ((one.time - start) * 1e9).round()));
+    assert!(ouster.passes(), "{:?}", ouster.document().screen());
+    let from_below = judged("ring t", &|one| format!("{} {}", one.ring, ((one.time - start) * 1e9).round()));
+    let why = from_below.why.expect("a reason");
+    assert!(why.contains("beside Ouster's field t"), "{why}");
+    // Livox: the channel as its line, nanoseconds of the clock.
+    let livox = judged("tag line timestamp", &|one| format!("16 {} {}", channel(one), one.time * 1e9));
+    assert!(livox.passes(), "{:?}", livox.document().screen());
+    // Others: seconds of the clock.
+    let others = judged("ring timestamp", &|one| format!("{} {}", one.ring, one.time));
+    assert!(others.passes(), "{:?}", others.document().screen());
 }
 
 #[test]

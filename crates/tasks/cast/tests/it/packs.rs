@@ -265,6 +265,35 @@ fn a_changed_pack_and_arrays_of_another_shape_are_refused() {
     let folders = Folders::right();
     write_npy_numbers(folders.pack.path().join("rays.npy"), &[1, 8], &[1.0; 8]).unwrap();
     assert!(refused(&folders).contains("SHA-256"), "{}", refused(&folders));
+    // An answer is changed; then its digest is too.
+    let folders = Folders::right();
+    let t = folders.pack.path().join("t.npy");
+    let array = read_npy_numbers(&t, &Default::default()).unwrap();
+    let mut changed = array.values.clone();
+    let hit = changed.iter().position(|t| t.is_finite()).unwrap();
+    changed[hit] = changed[hit].next_up();
+    write_npy_numbers(&t, &array.shape, &changed).unwrap();
+    let message = refused(&folders);
+    assert!(message.contains("t.npy") && message.contains("SHA-256"), "{message}");
+    let listing = folders.pack.path().join("raypack.json");
+    let (old, new) = message
+        .split_once("expected ")
+        .map(|(found, expected)| {
+            let digest = |text: &str| {
+                text.split(|c: char| !c.is_ascii_hexdigit())
+                    .find(|word| word.len() == 64)
+                    .unwrap()
+                    .to_string()
+            };
+            (digest(expected), digest(found))
+        })
+        .unwrap();
+    let text = std::fs::read_to_string(&listing).unwrap().replace(&old, &new);
+    std::fs::write(&listing, text).unwrap();
+    let message = refused(&folders);
+    assert!(message.contains(&format!("ray {hit}: another answer than the exact one")), "{message}");
+    std::fs::remove_file(&t).unwrap();
+    assert!(refused(&folders).contains("t.npy"), "{}", refused(&folders));
     for (document, expected) in
         [("{", "document"), (r#"{"format":1,"kind":"x","sides":"both","files":[]}"#, "kind")]
     {

@@ -22,6 +22,18 @@ const MAX_CELLS: i32 = 1024;
 /// Words for points that are laid on rays by ring and time.
 pub(super) const BY_RING: &str = "by ring and time";
 
+/// Words for points that are laid on rays by their direction.
+pub(super) const BY_DIRECTION: &str = "by direction";
+
+/// In which order points lie in their file.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Order {
+    /// A row of points is one channel, and not one firing sequence.
+    pub(super) is_of_channels: bool,
+    /// The rows run from the last to the first; the points of each row do.
+    pub(super) backwards: [bool; 2],
+}
+
 /// What a number in the field `ring` stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Ring {
@@ -71,14 +83,15 @@ impl Asked<'_> {
     ) -> Option<Assigned> {
         let scan = self.scan?;
         let times = scan.times.as_ref()?;
-        let channels = self.channels();
-        let (of_channel, by) = match (cloud.column("channel"), cloud.column("ring")) {
-            _ if channels.is_none() => return None,
-            (Some(column), None) => (column, "by channel and time"),
-            (_, Some(column)) => (column, BY_RING),
+        // Without channels the time alone tells the ray.
+        let channels = self.channels().unwrap_or(1);
+        let of_channel = cloud.column("channel").or_else(|| cloud.column("line"));
+        let (of_channel, by) = match (of_channel, cloud.column("ring")) {
+            _ if self.channels().is_none() => (None, "by time"),
+            (Some(column), None) => (Some(column), "by channel and time"),
+            (_, Some(column)) => (Some(column), BY_RING),
             (None, None) => return None,
         };
-        let channels = channels?;
         // With both fields, the ring is what consumers read.
         let is_ring = by == BY_RING;
         let channel_of: Vec<usize> = match (is_ring, &scan.elevations_deg) {
@@ -109,7 +122,7 @@ impl Asked<'_> {
             }
         }
         let ray = |point: usize| {
-            let key = of_channel.values[point];
+            let key = of_channel.map_or(0.0, |column| column.values[point]);
             let channel = *channel_of.get((key.fract() == 0.0 && key >= 0.0).then_some(key as usize)?)?;
             let time = seconds(of_time.values[point]) - late_s;
             let list = &fired[channel];
@@ -138,23 +151,35 @@ impl Asked<'_> {
     }
 
     /// By order: one point for each ray.
-    pub(super) fn by_order(&self, cloud: &Cloud, is_point: &[bool], is_turned: bool) -> Option<Assigned> {
+    pub(super) fn by_order(&self, cloud: &Cloud, is_point: &[bool], order: Order) -> Option<Assigned> {
         if cloud.len() != self.count {
             return None;
         }
-        if !is_turned {
+        if order == Order::default() {
             return Some(self.collected(is_point, Some, "by the order of the points"));
         }
         let channels = self.channels()?;
         let sequences = self.count.checked_div(channels)?;
-        let ray = |point: usize| Some(point % sequences * channels + point / sequences);
-        Some(self.collected(is_point, ray, "by the order of the points, a row for each channel"))
+        let (rows, columns) =
+            if order.is_of_channels { (channels, sequences) } else { (sequences, channels) };
+        let ray = |point: usize| {
+            let turned = |at: usize, of: usize, backwards: bool| if backwards { of - 1 - at } else { at };
+            let row = turned(point / columns, rows, order.backwards[0]);
+            let column = turned(point % columns, columns, order.backwards[1]);
+            Some(if order.is_of_channels { column * channels + row } else { row * channels + column })
+        };
+        let words = match order.is_of_channels {
+            true => "by the order of the points, a row for each channel",
+            false => "by the order of the points",
+        };
+        Some(self.collected(is_point, ray, words))
     }
 
-    /// Whether the rows of an organised cloud are channels, and not firing sequences.
-    pub(super) fn has_rows_of_channels(&self, cloud: &Cloud) -> bool {
-        let Some(channels) = self.channels() else { return false };
-        cloud.height > 1 && cloud.height as usize == channels && cloud.width as usize != channels
+    /// Whether the rows of an organised cloud are channels, and not firing sequences; `None` if their numbers are the same.
+    pub(super) fn has_rows_of_channels(&self, cloud: &Cloud) -> Option<bool> {
+        let Some(channels) = self.channels() else { return Some(false) };
+        let has_channels = cloud.height > 1 && cloud.height as usize == channels;
+        if has_channels && cloud.width as usize == channels { None } else { Some(has_channels) }
     }
 
     /// By direction: rays and points in the sensor's frame, the ray that is nearest in angle.
@@ -191,7 +216,7 @@ impl Asked<'_> {
             }
             (best.0 * NEARER <= next && best.0.is_finite()).then_some(best.1)
         };
-        self.collected(is_point, ray, "by direction")
+        self.collected(is_point, ray, BY_DIRECTION)
     }
 
     fn collected(
@@ -220,22 +245,40 @@ impl Assigned {
     pub(super) fn is_clear(&self, points: usize) -> bool {
         self.strays.len() * 100 <= points * MAX_STRAY_PERCENT
     }
+
+    /// Whether another rule lays so few of these points otherwise.
+    pub(super) fn is_like(&self, other: &Self, points: usize) -> bool {
+        let otherwise = self.point_of.iter().zip(&other.point_of).filter(|(a, b)| a.is_some() && a != b);
+        otherwise.count() * 100 <= points * MAX_STRAY_PERCENT
+    }
 }
 
 /// The field that has the time, and what makes seconds of the pack of its numbers.
 fn seconds<'a>(cloud: &'a Cloud, times: &[f64]) -> Option<(&'a CloudColumn, impl Fn(f64) -> f64)> {
     let first = times.iter().copied().fold(f64::INFINITY, f64::min);
-    // Velodyne: seconds after the first ray. Ouster and Livox: whole nanoseconds.
+    // Velodyne: seconds after the first ray. Ouster and Livox: nanoseconds, `offset_time` after the first ray. Others: seconds.
+    let stamp = if is_of_livox(cloud) { 1e-9 } else { 1.0 };
     let known =
-        [("time", 1.0, first), ("timestamp", 1.0, 0.0), ("t", 1e-9, first), ("offset_time", 1e-9, first)];
+        [("time", 1.0, first), ("timestamp", stamp, 0.0), ("t", 1e-9, first), ("offset_time", 1e-9, first)];
     known
         .into_iter()
         .find_map(|(name, unit, zero)| Some((cloud.column(name)?, move |number: f64| number * unit + zero)))
 }
 
-/// The fields that tell the ray of a point.
+/// Whether a cloud has the fields of Livox's driver: its `timestamp` is in nanoseconds.
+fn is_of_livox(cloud: &Cloud) -> bool {
+    cloud.column("line").is_some() && cloud.column("tag").is_some()
+}
+
+/// What the field `ring` counts: with Ouster's field `t` channels from above, as its driver does, else from below.
+pub(super) fn usual_ring(cloud: &Cloud) -> Ring {
+    let is_of_ouster = cloud.column("t").is_some() && cloud.column("time").is_none();
+    if is_of_ouster { Ring::FromAbove } else { Ring::FromBelow }
+}
+
+/// The fields that tell the ray of a point, and whose they are.
 pub(super) fn is_key(name: &str) -> bool {
-    ["ring", "channel", "time", "timestamp", "t", "offset_time"].contains(&name)
+    ["ring", "channel", "line", "tag", "time", "timestamp", "t", "offset_time"].contains(&name)
 }
 
 /// Why points cannot be laid on rays.

@@ -58,9 +58,17 @@ pub(in crate::pack) fn of_cloud<'a>(
         }
     });
     of_axes(&mut list);
+    // These explain much: a head that turns otherwise gives points that other rays have.
+    for (words, part) in &case.backwards {
+        list.add(*words, true, move |trial| laid(trial, part));
+    }
     let estimated = move |trial: &Trial| {
         let mut list = List { extras: Vec::new() };
         estimate(&mut list, trial, case, exact, sides);
+        if let Some(part) = &case.directed {
+            let words = "points are not in the order of the rays: their directions tell which is whose";
+            list.add(words, true, move |trial| laid(trial, part));
+        }
         list.extras
     };
     OfCloud { part: &case.part, extras: list.extras, estimated: Box::new(estimated) }

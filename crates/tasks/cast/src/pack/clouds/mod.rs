@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! assign     the ray of each point: by channel and time, by order, or by direction
+//! rules      which of these it is, and which other ones a mistake may have followed
 //! read       a file, its points on their rays, and what is stated by them
 //! turn       how a spinning head turns, from its rays and their times
 //! fit        numbers of a mistake, from the points
@@ -12,6 +13,7 @@ mod assign;
 pub(super) mod fit;
 mod mistakes;
 mod read;
+mod rules;
 mod turn;
 
 pub(super) use mistakes::of_cloud;

@@ -4,11 +4,12 @@ use std::path::Path;
 
 use glam::DVec3;
 use raypencil_files::FileError;
-use raypencil_mesh_io::{Cloud, CloudStorage, read_cloud};
+use raypencil_mesh_io::{CloudStorage, read_cloud};
 use raypencil_scene::CastRay;
 
-use super::assign::{Asked, Assigned, BY_RING, Ring, is_key, unclear};
+use super::assign::{Asked, Assigned, BY_DIRECTION, BY_RING, Order, Ring, is_key, unclear, usual_ring};
 use super::fit::rounded;
+use super::rules::{Places, assigned, backwards, by_direction, rings, swapped};
 use crate::cloud::CloudFrame;
 use crate::comparison::Stated;
 use crate::pack::candidate::CandidateConventions;
@@ -28,8 +29,8 @@ pub struct CloudFacts {
     pub strays: Vec<usize>,
     /// Whether the field `range` was judged too.
     pub has_range: bool,
-    /// Number of points whose fields of channel and time are not those of their ray, as their order or another time tells it.
-    pub wrong_keys: usize,
+    /// Indices of the rays whose points have another ring, channel or time than theirs, as order or another time tells it.
+    pub wrong_keys: Vec<usize>,
     /// What explains them.
     pub(in crate::pack) keys_why: Option<String>,
 }
@@ -44,6 +45,10 @@ pub(in crate::pack) struct CloudCase<'a> {
     pub(in crate::pack) facts: CloudFacts,
     /// The same points on the rays that another rule of order gives, and that rule in words.
     pub(in crate::pack) otherwise: Vec<(&'static str, CloudPart)>,
+    /// The same for orders that run from the last to the first.
+    pub(in crate::pack) backwards: Vec<(&'static str, CloudPart)>,
+    /// The same for points that were laid by their order, each on the ray that its direction tells.
+    pub(in crate::pack) directed: Option<CloudPart>,
     /// The field `range` and how far storing may have moved it, for each ray.
     ranges: Option<(Vec<f64>, Vec<f64>)>,
 }
@@ -57,19 +62,6 @@ impl CloudCase<'_> {
         stated
     }
 }
-
-/// What a number in the field `ring` may stand for in place of what it should.
-const RINGS: [(&str, Ring); 3] = [
-    ("the field ring counts channels from above: its 0 is the lowest", Ring::FromAbove),
-    (
-        "the field ring is the channel in the order of the manual: it counts elevations from below",
-        Ring::Channel,
-    ),
-    (
-        "the field ring counts channels in the opposite order of the manual: it counts elevations from below",
-        Ring::ChannelReversed,
-    ),
-];
 
 /// Reads a cloud and lays its points on the rays.
 pub(in crate::pack) fn read_cloud_of<'a>(
@@ -96,15 +88,24 @@ pub(in crate::pack) fn read_cloud_of<'a>(
     let is_point: Vec<bool> = points.iter().map(|&point| point.is_finite() && !is_miss(point)).collect();
     let real = is_point.iter().filter(|&&is_point| is_point).count();
     let asked = Asked { shape, count: rays.len(), scan };
-    let found = assigned(&asked, &cloud, (&points, &is_point), rays, frame);
-    let strays = found.as_ref().map_or(real, |found| found.strays.len());
+    let usual = usual_ring(&cloud);
+    let by_direction = || by_direction(&asked, rays, (&points, &is_point), frame);
+    let angle = |point: usize, ray: usize| {
+        let place = pose_of(scan, frame, ray).map_or(points[point], |pose| pose * points[point]);
+        let (from, along) = (place - rays[ray].origin, rays[ray].direction);
+        libm::atan2(from.cross(along).length(), from.dot(along))
+    };
+    let found =
+        assigned(&asked, &cloud, &is_point, usual, Places { by_direction: &by_direction, angle: &angle });
+    let strays = found.as_ref().map_or(real, |(found, _)| found.strays.len());
     let lateness = asked.lateness(&cloud, &is_point);
     // Times with another zero still tell the rays.
     let shifted = |late: f64| {
-        let found = asked.by_keys(&cloud, &is_point, (Ring::FromBelow, late));
+        let found = asked.by_keys(&cloud, &is_point, (usual, late));
         found.filter(|found| found.is_clear(real)).map(|found| (found, late))
     };
-    let (found, late) = match found.filter(|found| found.is_clear(real)) {
+    let order = found.as_ref().and_then(|(_, order)| *order);
+    let (found, late) = match found.map(|(found, _)| found).filter(|found| found.is_clear(real)) {
         Some(found) => (found, 0.0),
         None => {
             let found = lateness.iter().find_map(|&late| shifted(late));
@@ -125,29 +126,29 @@ pub(in crate::pack) fn read_cloud_of<'a>(
         }
     };
     let part = part_of(&found);
+    let of =
+        |other: Option<Assigned>| other.filter(|other| other.is_clear(real)).map(|other| part_of(&other));
+    let with = |(words, other): (&'static str, Option<Assigned>)| Some((words, of(other)?));
     let mut otherwise = Vec::new();
-    let mut add = |words: &'static str, other: Option<Assigned>| {
-        if let Some(other) = other.filter(|other| other.is_clear(real)) {
-            otherwise.push((words, part_of(&other)));
-        }
-    };
     if found.by == BY_RING {
-        for (words, ring) in RINGS {
-            add(words, asked.by_keys(&cloud, &is_point, (ring, late)));
-        }
+        let keys = |(words, ring)| (words, asked.by_keys(&cloud, &is_point, (ring, late)));
+        otherwise.extend(rings(usual).into_iter().map(keys).filter_map(with));
     }
-    if !found.by.starts_with("by the order") {
-        let words = "ring, channel or time of the points are not those of their rays, which the order of the points gives";
-        add(words, asked.by_order(&cloud, &is_point, asked.has_rows_of_channels(&cloud)));
-    } else {
-        let is_turned = found.by.ends_with("channel");
-        let words = match is_turned {
-            true => {
-                "points are in the order of the rays, channel by channel in each sequence: WIDTH and HEIGHT are swapped"
-            }
-            false => "points are in rows of one channel: WIDTH and HEIGHT are swapped",
-        };
-        add(words, asked.by_order(&cloud, &is_point, !is_turned));
+    let by_order = |(words, order)| (words, asked.by_order(&cloud, &is_point, order));
+    let (mut of_backwards, mut directed) = (Vec::new(), None);
+    match order {
+        // A list without an order of its own is held to none.
+        None if found.by == BY_DIRECTION => {}
+        None => {
+            let words = "ring, channel or time of the points are not those of their rays, which the order of the points gives";
+            let is_of_channels = asked.has_rows_of_channels(&cloud) == Some(true);
+            otherwise.extend(with(by_order((words, Order { is_of_channels, ..Order::default() }))));
+        }
+        Some(order) => {
+            otherwise.extend(with(by_order(swapped(order))));
+            of_backwards.extend(backwards(order).into_iter().map(by_order).filter_map(with));
+            directed = of(by_direction());
+        }
     }
     let ranges = cloud.column("range").filter(|column| column.storage != CloudStorage::Whole).map(|column| {
         let of = |of: &Option<usize>| {
@@ -159,24 +160,26 @@ pub(in crate::pack) fn read_cloud_of<'a>(
         found.point_of.iter().map(of).unzip()
     });
     // Keys that do not tell the rays are wrong themselves.
-    let unlike = |keys: &Assigned| {
-        let pairs = found.point_of.iter().zip(&keys.point_of);
-        pairs.filter(|(found, of_keys)| found.is_some_and(|k| is_point[k]) && found != of_keys).count()
+    let unlike = |keys: &Assigned| -> Vec<usize> {
+        let pairs = found.point_of.iter().zip(&keys.point_of).enumerate();
+        let is_unlike = |(found, of_keys): (&Option<usize>, &Option<usize>)| {
+            found.is_some_and(|k| is_point[k]) && found != of_keys
+        };
+        pairs.filter(|(_, pair)| is_unlike(*pair)).map(|(ray, _)| ray).collect()
     };
-    let keys = asked.by_keys(&cloud, &is_point, (Ring::FromBelow, 0.0));
-    let wrong_keys = keys.as_ref().map_or(0, unlike);
+    let keys = asked.by_keys(&cloud, &is_point, (usual, 0.0));
+    let wrong_keys = keys.as_ref().map_or_else(Vec::new, unlike);
     let explains = |ring: Ring, late: f64| {
-        asked.by_keys(&cloud, &is_point, (ring, late)).is_some_and(|keys| unlike(&keys) == 0)
+        asked.by_keys(&cloud, &is_point, (ring, late)).is_some_and(|keys| unlike(&keys).is_empty())
     };
     let of_ring =
-        || RINGS.iter().find(|(_, ring)| explains(*ring, 0.0)).map(|(words, _)| (*words).to_string());
+        || rings(usual).iter().find(|(_, ring)| explains(*ring, 0.0)).map(|(words, _)| (*words).to_string());
     let of_time = || {
-        let late =
-            lateness.iter().flat_map(|&late| rounded(late)).find(|&late| explains(Ring::FromBelow, late))?;
+        let late = lateness.iter().flat_map(|&late| rounded(late)).find(|&late| explains(usual, late))?;
         let way = if late > 0.0 { "late" } else { "early" };
         Some(format!("the times of the points are {} s too {way}", late.abs()))
     };
-    let keys_why = if wrong_keys > 0 { of_ring().or_else(of_time) } else { None };
+    let keys_why = if !wrong_keys.is_empty() { of_ring().or_else(of_time) } else { None };
     let facts = CloudFacts {
         wrong_keys,
         keys_why,
@@ -186,7 +189,18 @@ pub(in crate::pack) fn read_cloud_of<'a>(
         strays: found.strays,
         has_range: ranges.is_some(),
     };
-    Ok(CloudCase { shape, rays, scan, frame, part, facts, otherwise, ranges })
+    Ok(CloudCase {
+        shape,
+        rays,
+        scan,
+        frame,
+        part,
+        facts,
+        otherwise,
+        backwards: of_backwards,
+        directed,
+        ranges,
+    })
 }
 
 /// The pose of a cloud's frame for a ray; `None`: it is the mesh's.
@@ -197,37 +211,4 @@ pub(super) fn pose_of(scan: Option<&Scan>, frame: CloudFrame, index: usize) -> O
         CloudFrame::Sensor => Some(scan.pose(index)),
         CloudFrame::SensorAtStart => Some(scan.mounting.first()),
     }
-}
-
-/// The first rule that lays nearly all points on rays of their own.
-fn assigned(
-    asked: &Asked<'_>,
-    cloud: &Cloud,
-    (points, is_point): (&[DVec3], &[bool]),
-    rays: &[CastRay],
-    frame: CloudFrame,
-) -> Option<Assigned> {
-    let real = is_point.iter().filter(|&&is_point| is_point).count();
-    let clear = |assigned: &Assigned| assigned.is_clear(real);
-    let by_keys = asked.by_keys(cloud, is_point, (Ring::FromBelow, 0.0)).filter(clear);
-    let by_order = || asked.by_order(cloud, is_point, asked.has_rows_of_channels(cloud));
-    by_keys.or_else(by_order).or_else(|| {
-        // A direction tells rays apart in the sensor's own frame. Of one that moves, points in another frame have lost it.
-        let is_moving = asked.scan.is_some_and(Scan::is_moving);
-        if is_moving && frame != CloudFrame::Sensor {
-            return None;
-        }
-        let of_sensor = |index: usize, ray: &CastRay| {
-            let ray = asked.scan.map_or(*ray, |scan| scan.in_pattern(index, ray));
-            (ray.origin, ray.direction.normalize())
-        };
-        let rays: Vec<(DVec3, DVec3)> =
-            rays.iter().enumerate().map(|(index, ray)| of_sensor(index, ray)).collect();
-        // A sensor that stands still has one pose for all points.
-        let to_sensor =
-            asked.scan.filter(|_| frame == CloudFrame::Mesh).map(|scan| scan.mounting.first().inverse());
-        let points: Vec<DVec3> =
-            points.iter().map(|&point| to_sensor.map_or(point, |pose| pose * point)).collect();
-        Some(asked.by_direction(&rays, &points, is_point))
-    })
 }
