@@ -130,7 +130,11 @@ impl<'t> Search<'t> {
 
     /// The same reason for these sensors, if it explains their wrong rays.
     pub(crate) fn confirm(&self, found: &Finding) -> Option<Finding> {
-        if (self.wrong.all.len() as u64) < MIN_CONFIRMING_RAYS || found.rules.is_some() {
+        let is_single = found.mistakes.contains(&Mistake::SinglePrecision);
+        // The arithmetic is the program's, not a sensor's: it needs no proof of many rays, if it leaves none.
+        let is_arithmetic = is_single && found.corrections.is_empty();
+        let least = if is_arithmetic { 1 } else { MIN_CONFIRMING_RAYS };
+        if (self.wrong.all.len() as u64) < least || found.rules.is_some() {
             return None;
         }
         // A cut was found in the other sensor's rays.
@@ -138,14 +142,17 @@ impl<'t> Search<'t> {
             return None;
         }
         let plan = match found.corrections.as_slice() {
+            [] if is_arithmetic => {
+                Plan { corrections: Vec::new(), applied: Vec::new(), off: Default::default() }
+            }
             [one] => self.trial.plan_of_one(one, &self.trial.single(one))?,
             [a, b] => self.trial.plan_of_two([a, b], [&self.trial.single(a), &self.trial.single(b)])?,
             _ => return None,
         };
-        let is_single = found.mistakes.contains(&Mistake::SinglePrecision);
         let precision = if is_single { Precision::F32 } else { self.case.recorded.precision };
-        let tally = self.judged(&plan, precision, MIN_CONFIRMING_RAYS)?;
-        Some(Finding { tally, ..found.clone() })
+        let tally = self.judged(&plan, precision, least)?;
+        let is_told = !is_arithmetic || tally.off() == 0;
+        is_told.then(|| Finding { tally, ..found.clone() })
     }
 
     /// All pairs of which each part helps.

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use raypencil_diagnosis::Mistake;
-use raypencil_judge::Recorded;
+use raypencil_judge::{Quantity, Recorded};
 use raypencil_referee::ExactRenderer;
 use raypencil_scene::{Camera, Maybe, Mounted, Precision, Renderer, Request, Scene, SensorId, SensorMap};
 
 use super::candidates::*;
+use super::one::as_single;
 use super::wrong_renderers::wrong::Wrong;
 use super::wrong_renderers::{MISTAKES, Make, Random};
 
@@ -118,6 +119,34 @@ fn one_mistake_in_two_sensors_is_one_reason() {
     assert!(few_pyramids().diagnosis(&all.candidate).unwrap().reasons[0].is_everywhere);
 }
 
+/// The arithmetic is the program's: a sensor of which a handful of rays shows it has the same reason, whatever their number.
+#[test]
+fn single_precision_of_few_rays_is_that_of_the_other_sensors() {
+    let exact = &few_pyramids().exact;
+    let mut single = exact.clone();
+    ranges(&mut single, |index, range| {
+        let range = range as f32;
+        f64::from(if index.is_multiple_of(2) { range.next_up() } else { range })
+    });
+    // Of the last beam three ranges are as single precision has them, and no more.
+    let last = single.answers.maps.len() - 1;
+    let mut right = exact.answers.maps[last].range.clone().expect("ranges");
+    let range = single.answers.maps[last].range.as_mut().expect("ranges");
+    let mut left = 3;
+    for (cell, exact) in range.cells_mut().iter_mut().zip(right.cells_mut()) {
+        let is_off = |(stated, exact): (f64, f64)| (stated - exact).abs() > exact * 1e-7;
+        if left > 0 && cell.get().zip(exact.get()).is_some_and(is_off) {
+            left -= 1;
+        } else {
+            *cell = *exact;
+        }
+    }
+    assert_eq!(left, 0);
+    let found = few_pyramids().diagnosis(&single).expect("a reason");
+    assert_eq!(found.unexplained, []);
+    assert_eq!(few_pyramids().reasons(&single), ["camera, beam-0, beam-1: single_precision"]);
+}
+
 #[test]
 fn a_sensor_without_a_reason_is_said_to_have_none() {
     let wrong = made(few_pyramids(), &[("half a pixel in x", CAMERA), ("every fifth is lost", BEAM)]);
@@ -150,7 +179,7 @@ fn too_few_wrong_rays_have_no_reason_but_confirm_one() {
 #[test]
 fn a_lost_line_beside_undeclared_single_precision_is_told() {
     let mut wrong = made(few_pyramids(), &[("last row twice", CAMERA)]);
-    super::one::as_single(&mut wrong.candidate, &mut 0);
+    as_single(&mut wrong.candidate, &mut 0);
     let last = 31;
     // The last row repeats the rounded one.
     for map in &mut wrong.candidate.answers.maps[..1] {
@@ -323,7 +352,7 @@ fn lengths_that_end_in_one_plane_are_told_no_factor_and_no_place() {
     {
         let bench = one_wall(slopes);
         // Right points would tell the two apart.
-        let mut candidate = only(&bench.exact, &[raypencil_judge::Quantity::Range]);
+        let mut candidate = only(&bench.exact, &[Quantity::Range]);
         ranges(&mut candidate, |_, range| factor * range);
         assert_eq!(bench.reasons(&candidate), [""; 0], "{slopes:?} {factor}");
     }
