@@ -109,7 +109,11 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
         None => Path::new("out").join(format!("{}-drive", job.name)),
     };
     let output = output_folder(&folder, &command.scene.scene, command.stripes.as_deref().as_slice())?;
-    let stripes = command.stripes.as_deref().map(StripeFile::read).transpose()?;
+    let stripes = command
+        .stripes
+        .as_deref()
+        .map(|folder| StripeFile::read(folder, job.plan.rig.beams.len()))
+        .transpose()?;
     let mut contents = RecordContents::default();
     for word in &command.record {
         contents.add(word).expect("checked when it was parsed");

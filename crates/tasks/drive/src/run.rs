@@ -25,7 +25,7 @@ use crate::recording::{RecordContents, Recording};
 use crate::renderer_drive::{ExposedFrame, RendererDrive};
 use crate::sector_truth::{SectorTruth, TrueGround, first_obstacles};
 use crate::sun::Sun;
-use crate::warnings::{at_the_start, nothing_measured, start_too_steep};
+use crate::warnings::{at_the_start, nothing_measured, start_too_steep, stripes_left_over};
 
 /// Maximum number of animation frames: a few megabytes.
 const MAX_ANIMATION_FRAMES: u64 = 60;
@@ -293,6 +293,7 @@ pub fn drive_with(
     warnings.extend(start_too_steep(&job.plan, &at_start));
     let whereabouts = Whereabouts::of(&scene, Some(&at_start));
     let plan = survey_plan(&scene, Some(&at_start));
+    warnings.extend(stripes_left_over(extractor.as_deref()));
     warnings.extend(nothing_measured(edge_points));
     let looking = start.elapsed();
 

@@ -1,9 +1,11 @@
 //! Stripes from a file in place of the rover's own extraction: other people's edges, found in recorded images.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use raypencil_files::{Fault, FileError, Limits, read_npy_numbers};
+use raypencil_report::counted;
 use raypencil_rover::{BeamEdge, CameraImage, EdgePoint, Exposure, StripeExtractor, Stripes};
 use raypencil_scene::SceneError;
 
@@ -14,19 +16,25 @@ const COLUMNS: usize = 5;
 const MAX_BYTES: u64 = 2_000_000_000;
 
 /// Edges of a whole drive, by frame and step of a scan.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug)]
 pub struct StripeFile {
     path: PathBuf,
-    edges: BTreeMap<(u64, Option<u32>), Vec<BeamEdge>>,
+    edges: BTreeMap<Taken, Vec<BeamEdge>>,
+    /// The images that were asked for, each with its beam.
+    asked: Mutex<BTreeSet<(Taken, usize)>>,
 }
+
+/// When an image was taken: its frame, and the step of a scan.
+type Taken = (u64, Option<u32>);
 
 impl StripeFile {
     /// Reads `stripes.npy` of a folder (docs/formats/recording.md). The frames need not be in order, but the edges of an
     /// exposure enter the map in the order of the file.
+    /// `beams` is how many the rover has: an edge of a beam that it does not have is refused.
     ///
     /// # Errors
     /// A file that cannot be read, with the row that is wrong and what was expected.
-    pub fn read(folder: &Path) -> Result<Self, FileError> {
+    pub fn read(folder: &Path, beams: usize) -> Result<Self, FileError> {
         let path = folder.join("stripes.npy");
         let fault = |place: String, found: String, expected: &str| {
             FileError::Array(Fault::new(place, found, expected).in_file(&path))
@@ -52,6 +60,10 @@ impl StripeFile {
             };
             let (frame, step) = (whole(0, "frame", 0.0)? as u64, whole(1, "step", -1.0)?);
             let (beam, column) = (whole(2, "beam", 0.0)? as usize, whole(3, "column", 0.0)? as u32);
+            if beam >= beams {
+                let expected = format!("0 to {}: beams are counted from 0", beams.saturating_sub(1));
+                return Err(fault(format!("row {index}, beam"), beam.to_string(), &expected));
+            }
             let at = row[4];
             if !(0.0..=f64::from(u32::MAX)).contains(&at) {
                 let expected = "pixels from the image's upper border";
@@ -62,7 +74,7 @@ impl StripeFile {
             let edge = EdgePoint { i: column, j: at.floor() as u32, row: at };
             edges.entry((frame, step)).or_default().push(BeamEdge { beam, edge });
         }
-        Ok(Self { path, edges })
+        Ok(Self { path, edges, asked: Mutex::default() })
     }
 }
 
@@ -72,12 +84,15 @@ impl StripeExtractor for StripeFile {
             CameraImage::Flux(image) => (image.width(), image.height()),
             CameraImage::Numbers(image) => (image.width(), image.height()),
         };
-        let found = self.edges.get(&(exposure.frame, exposure.step)).map_or(&[][..], Vec::as_slice);
+        let taken = (exposure.frame, exposure.step);
+        let found = self.edges.get(&taken).map_or(&[][..], Vec::as_slice);
+        let mut asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
         let mut edges = Vec::new();
         for of in found {
             if exposure.beam.is_some_and(|beam| beam != of.beam) {
                 continue;
             }
+            asked.insert((taken, of.beam));
             let EdgePoint { i, row, .. } = of.edge;
             if i >= width || row > f64::from(height) {
                 let field = format!("{}: edge in frame {}", self.path.display(), exposure.frame);
@@ -89,6 +104,21 @@ impl StripeExtractor for StripeFile {
             edges.push(BeamEdge { edge, ..*of });
         }
         Ok(Stripes { edges, columns_left_out: 0 })
+    }
+
+    fn left_over(&self) -> Option<String> {
+        let asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
+        let all = self.edges.iter().flat_map(|(taken, edges)| edges.iter().map(move |of| (*taken, of.beam)));
+        let mut left = all.filter(|of| !asked.contains(of));
+        let ((frame, step), beam) = left.next()?;
+        let count = 1 + left.count();
+        let step = step.map_or_else(String::new, |step| format!(", step {step} of a scan"));
+        Some(format!(
+            "{} of {} {} of no image of this drive; the first is of frame {frame}{step}, beam {beam}.",
+            counted(count as u64, "edge", "edges"),
+            self.path.display(),
+            if count == 1 { "is" } else { "are" },
+        ))
     }
 }
 
@@ -103,7 +133,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let shape = [numbers.len() as u64 / 5, 5];
         write_npy_numbers(folder.path().join("stripes.npy"), &shape, numbers).unwrap();
-        let read = StripeFile::read(folder.path());
+        let read = StripeFile::read(folder.path(), 2);
         (folder, read)
     }
 
@@ -127,8 +157,16 @@ mod tests {
         // On the lower border of the image of 5 rows: in the last of them, and not in one that is not there.
         assert_eq!(at(5, None, None).unwrap(), [edge(0, 0, 4, 5.0)]);
         assert!(at(4, None, None).unwrap().is_empty());
+        // Of frame 2 nothing was asked.
+        let left = file.left_over().unwrap();
+        assert!(
+            left.starts_with("1 edge of ")
+                && left.ends_with("is of no image of this drive; the first is of frame 2, beam 0."),
+            "{left}"
+        );
         // The image has columns 0 to 5: a narrower one refuses the edge of frame 2.
         assert!(at(2, None, None).is_ok());
+        assert_eq!(file.left_over(), None);
         let narrow = CameraImage::Numbers(Image::filled(5, 5, 0));
         let refused = file.stripes(Exposure { frame: 2, step: None, beam: None }, &narrow).unwrap_err();
         assert!(refused.to_string().contains("frame 2 is column 5, row 3"), "{refused}");
@@ -140,6 +178,7 @@ mod tests {
             ([0.5, -1.0, 0.0, 0.0, 0.0], "row 0, frame"),
             ([0.0, -2.0, 0.0, 0.0, 0.0], "row 0, step"),
             ([0.0, -1.0, f64::NAN, 0.0, 0.0], "row 0, beam"),
+            ([0.0, -1.0, 2.0, 0.0, 0.0], "row 0, beam: 2; expected 0 to 1"),
             ([0.0, -1.0, 0.0, -1.0, 0.0], "row 0, column"),
             ([0.0, -1.0, 0.0, 0.0, f64::INFINITY], "row 0, row"),
         ] {
@@ -149,7 +188,7 @@ mod tests {
         }
         let folder = tempfile::tempdir().unwrap();
         write_npy_numbers(folder.path().join("stripes.npy"), &[4], &[0.0; 4]).unwrap();
-        let error = StripeFile::read(folder.path()).unwrap_err().to_string();
+        let error = StripeFile::read(folder.path(), 2).unwrap_err().to_string();
         assert!(error.contains("(n, 5)"), "{error}");
     }
 }

@@ -2,7 +2,7 @@
 //! that do not see the ground at the start, nothing measured.
 
 use glam::DVec3;
-use raypencil_rover::{DrivePlan, ExposureMode, OnVehicle};
+use raypencil_rover::{DrivePlan, ExposureMode, OnVehicle, StripeExtractor};
 use raypencil_scene::{Pose, Scene};
 use raypencil_survey::{Warning, WarningCode, warnings};
 
@@ -60,8 +60,14 @@ pub(crate) fn start_too_steep(plan: &DrivePlan, stance: &Pose) -> Option<Warning
 
 /// Warns if a whole drive found no edge of a stripe: then its maps know nothing.
 pub(crate) fn nothing_measured(edge_points: u64) -> Option<Warning> {
-    let sentence = "no image has an edge of a stripe, so no point of the ground was measured.";
+    let sentence = "no image gave an edge of a stripe, so no point of the ground was measured.";
     (edge_points == 0).then(|| Warning::of_scene(WarningCode::NothingMeasured, sentence))
+}
+
+/// Warns of stripes that were given for images that the drive did not take: those of another drive, or counted otherwise.
+pub(crate) fn stripes_left_over(extractor: Option<&dyn StripeExtractor>) -> Option<Warning> {
+    let sentence = extractor?.left_over()?;
+    Some(Warning::of_scene(WarningCode::StripesLeftOver, sentence))
 }
 
 #[cfg(test)]

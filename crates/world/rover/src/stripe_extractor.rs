@@ -62,6 +62,11 @@ pub trait StripeExtractor: Debug + Send + Sync {
     /// # Errors
     /// A reason why there is no answer, which ends the drive.
     fn stripes(&self, exposure: Exposure, image: &CameraImage) -> Result<Stripes, SceneError>;
+
+    /// What it has for images that it was never asked for, as one sentence: a drive warns of it at its end.
+    fn left_over(&self) -> Option<String> {
+        None
+    }
 }
 
 /// The rover's own extraction, for a rig.

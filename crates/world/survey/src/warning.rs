@@ -41,6 +41,8 @@ pub enum WarningCode {
     BeamsOutOfOrder,
     /// A drive has measured no point of the ground.
     NothingMeasured,
+    /// Edges of stripes were given for images that the drive did not take.
+    StripesLeftOver,
     /// A drive starts where the vehicle stands steeper than it may.
     StartTooSteep,
     /// Polygons of the terrain's file cross themselves.
@@ -55,7 +57,7 @@ pub enum WarningCode {
 
 impl WarningCode {
     /// All codes.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::NoHits,
         Self::FewHits,
         Self::BacksFirst,
@@ -69,6 +71,7 @@ impl WarningCode {
         Self::BlindThreshold,
         Self::BeamsOutOfOrder,
         Self::NothingMeasured,
+        Self::StripesLeftOver,
         Self::StartTooSteep,
         Self::PolygonsCross,
         Self::PolygonsNotPlanar,
@@ -92,6 +95,7 @@ impl WarningCode {
             Self::BlindThreshold => "blind_threshold",
             Self::BeamsOutOfOrder => "beams_out_of_order",
             Self::NothingMeasured => "nothing_measured",
+            Self::StripesLeftOver => "stripes_left_over",
             Self::StartTooSteep => "start_too_steep",
             Self::PolygonsCross => "polygons_cross",
             Self::PolygonsNotPlanar => "polygons_not_planar",

@@ -43,8 +43,9 @@ fn recorded_stripes_drive_the_same_drive_again() {
     let contents = RecordContents { points: true, maps: true, ..RecordContents::default() };
     let run = recorded(&job, first.path(), contents, None);
     assert!(run.edge_points > 1000, "{}", run.edge_points);
-    let stripes = StripeFile::read(&first.path().join("recording")).unwrap();
-    let again = recorded(&job, second.path(), contents, Some(Arc::new(stripes)));
+    let stripes = Arc::new(StripeFile::read(&first.path().join("recording"), 2).unwrap());
+    let again = recorded(&job, second.path(), contents, Some(Arc::clone(&stripes) as _));
+    assert_eq!(stripes.left_over(), None);
     assert_eq!(run.map, again.map);
     assert_eq!(run.frames, again.frames);
     // Every file of the recording is the same, byte for byte.
@@ -59,8 +60,16 @@ fn recorded_stripes_drive_the_same_drive_again() {
     let numbers = read_npy_numbers(&path, &Limits::default()).unwrap();
     let values = &numbers.values[..numbers.values.len() / 2 / 5 * 5];
     raypencil_files::write_npy_numbers(&path, &[values.len() as u64 / 5, 5], values).unwrap();
-    let half = StripeFile::read(&first.path().join("recording")).unwrap();
+    let half = StripeFile::read(&first.path().join("recording"), 2).unwrap();
     assert_ne!(recorded(&job, second.path(), contents, Some(Arc::new(half))).map, run.map);
+    // Frames counted otherwise are those of no image.
+    let late: Vec<f64> =
+        values.chunks_exact(5).flat_map(|row| [row[0] + 1000.0, row[1], row[2], row[3], row[4]]).collect();
+    raypencil_files::write_npy_numbers(&path, &[late.len() as u64 / 5, 5], &late).unwrap();
+    let late = StripeFile::read(&first.path().join("recording"), 2).unwrap();
+    let warnings = recorded(&job, second.path(), contents, Some(Arc::new(late))).warnings;
+    let said: Vec<&str> = warnings.iter().map(|warning| warning.code.word()).collect();
+    assert!(said.contains(&"stripes_left_over") && said.contains(&"nothing_measured"), "{said:?}");
 }
 
 #[test]
