@@ -1,6 +1,9 @@
 //! Faults of light, injected into the naive renderer one by one: a comparison with either renderer must report defects.
 //! Without a fault it must report none.
 
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
 use raypencil::judge::{Class, SensorResult, Side, compare};
 use raypencil::pack::with_bench;
 use raypencil::scanline::Scanline;
@@ -24,8 +27,11 @@ fn scenes(fault: Fault) -> Vec<(&'static str, Scene)> {
         | Fault::OccludersBeforePlane
         | Fault::PixelOfVisibleOnly
         | Fault::OffImageClamped => {
-            let benched = |model| with_bench(&lit(model)).expect("a scene");
-            [FluxModel::Radiometric, FluxModel::Eq1].map(|model| ("a bench", benched(model))).to_vec()
+            static BENCHED: LazyLock<[Scene; 2]> = LazyLock::new(|| {
+                let benched = |model| with_bench(&lit(model)).expect("a scene");
+                [FluxModel::Radiometric, FluxModel::Eq1].map(benched)
+            });
+            BENCHED.clone().map(|scene| ("a bench", scene)).to_vec()
         }
         Fault::ShadowEpsilon => vec![("a plate 0.5 mm before a wall", screened(1.0 / 2048.0, false))],
         Fault::FacesAtPointHide => vec![("a wall of doubled faces", doubled())],
@@ -38,17 +44,32 @@ fn side<'a>(renderer: &dyn Renderer, name: &'a str, output: &'a RenderOutput) ->
     Side { name, output, precision: renderer.precision(), attributions: None }
 }
 
-fn compared(scene: &Scene, honest: &dyn Renderer, naive: Naive) -> Vec<SensorResult> {
-    let render = |renderer: &dyn Renderer| renderer.render(scene, &Request::EVERYTHING);
-    let (a, b) = (render(honest), render(&naive));
-    compare(scene, side(honest, "honest", &a), side(&naive, "naive", &b))
+/// A scene, and what both honest renderers make of it.
+struct Rendered {
+    honest: [RenderOutput; 2],
+}
+
+impl Rendered {
+    fn of(scene: &Scene) -> Self {
+        let renderers: [Box<dyn Renderer>; 2] = [Box::new(Scanline::default()), Box::new(Tracer::new())];
+        Self { honest: renderers.each_ref().map(|honest| honest.render(scene, &Request::EVERYTHING)) }
+    }
+
+    /// Both beside another renderer.
+    fn beside(&self, scene: &Scene, naive: Naive) -> [Vec<SensorResult>; 2] {
+        let other = naive.render(scene, &Request::EVERYTHING);
+        let precision = Scanline::default().precision();
+        let of_honest = |output| Side { name: "honest", output, precision, attributions: None };
+        self.honest.each_ref().map(|honest| compare(scene, of_honest(honest), side(&naive, "naive", &other)))
+    }
 }
 
 #[test]
 fn every_fault_of_light_is_found() {
-    let honest: [Box<dyn Renderer>; 2] = [Box::new(Scanline::default()), Box::new(Tracer::new())];
     println!("{:<24} {:<42} {:<9} {:>9} {:>9}", "fault", "scene", "sensor", "scanline", "tracer");
     let mut wrong = Vec::new();
+    // Most faults are tried on the same scenes.
+    let mut known: BTreeMap<String, Rendered> = BTreeMap::new();
     for fault in Fault::ALL.iter().copied().filter(|fault| fault.is_of_light()) {
         for (name, scene) in scenes(fault) {
             let count = |sensors: &[SensorResult], which: fn(SensorId) -> bool| -> u64 {
@@ -56,16 +77,17 @@ fn every_fault_of_light_is_found() {
             };
             let is_camera = |sensor| sensor == SensorId::Camera;
             let is_beam = |sensor| sensor != SensorId::Camera;
-            let found = honest.each_ref().map(|honest| {
-                let without = compared(&scene, &**honest, Naive::default());
-                for of in &without {
+            let rendered = known.entry(format!("{name}, {:?}", scene.flux_model())).or_insert_with(|| {
+                let rendered = Rendered::of(&scene);
+                for of in rendered.beside(&scene, Naive::default()).iter().flatten() {
                     if of.of(Class::Defect) + of.of(Class::Undecided) != 0 {
                         wrong.push(format!("{name} without a fault: {:?}", of.defects.first()));
                     }
                 }
-                let with = compared(&scene, &**honest, Naive { fault: Some(fault) });
-                [count(&with, is_camera), count(&with, is_beam)]
+                rendered
             });
+            let with = rendered.beside(&scene, Naive { fault: Some(fault) });
+            let found = with.map(|with| [count(&with, is_camera), count(&with, is_beam)]);
             for (index, sensor) in ["camera", "beams"].into_iter().enumerate() {
                 let [by_scanline, by_tracer] = found.map(|counts| counts[index]);
                 println!(

@@ -69,7 +69,9 @@ fn render_and_pack_warn_on_standard_error_and_in_json() {
     let folder = folder();
     std::fs::write(folder.path().join("aside.toml"), ASIDE).unwrap();
     let sentence = "camera: none of its 3,072 rays hits the front of the terrain within the maximum range.";
-    for command in [&["render", "aside.toml", "--with", "tracer"][..], &["pack", "aside.toml"][..]] {
+    for command in
+        [&["render", "aside.toml", "--with", "tracer"][..], &["pack", "aside.toml", "--no-bench"][..]]
+    {
         let output = raypencil(folder.path(), &[command, &["-o", command[0]]].concat());
         assert_eq!(output.status.code(), Some(0));
         assert!(text(&output.stderr).contains(&format!("warning: {sentence}\n")), "{}", text(&output.stderr));
