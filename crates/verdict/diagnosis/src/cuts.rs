@@ -102,10 +102,15 @@ pub(crate) fn cuts(case: Case<'_>, wrong: &WrongRays) -> Vec<Correction> {
             }
         }
     }
-    // What two numbers explain alike is explained by neither, unless it is a single line.
+    // What two numbers explain alike is explained by neither, unless it is a single line; but a range and the depth that goes with it
+    // say the same, and it is said of both.
     let is_single = lines.iter().any(|(_, _, _, lines)| *lines == 1);
-    if by_length.len() > 1 {
-        by_length.clear();
+    match by_length.as_slice() {
+        &[(CutBy::Range, is_above, low, high), (CutBy::Depth, other, ..)] if is_above == other => {
+            by_length = vec![(CutBy::RangeOrDepth, is_above, low, high)];
+        }
+        [_, _, ..] => by_length.clear(),
+        _ => {}
     }
     let mut found = Vec::new();
     if by_length.is_empty() || is_single {
@@ -120,7 +125,13 @@ pub(crate) fn cuts(case: Case<'_>, wrong: &WrongRays) -> Vec<Correction> {
     if lines.is_empty() {
         for &(by, is_above, low, high) in &by_length {
             let held = held(case, sensor, wrong, (by, is_above));
-            for held in held.into_iter().filter(|held| matches!(held, Held::NoHit | Held::Constant(_))) {
+            // A length that stands there is a range or a depth, and no matter of both.
+            let is_told = |held: &Held| match held {
+                Held::NoHit => true,
+                Held::Constant(_) => by != CutBy::RangeOrDepth,
+                Held::Neighbour | Held::Anything => false,
+            };
+            for held in held.into_iter().filter(is_told) {
                 let at = match held {
                     // Clipped lengths say where.
                     Held::Constant(length) if (low..=high).contains(&length) => length,

@@ -110,7 +110,7 @@ pub(crate) fn cut_number(case: Case<'_>, by: CutBy, place: Place) -> Option<f64>
         image.as_ref().and_then(|image| image.at(place.i, place.j).get())
     };
     match by {
-        CutBy::Range => length(&map.range),
+        CutBy::Range | CutBy::RangeOrDepth => length(&map.range),
         CutBy::Depth => length(&map.depth),
         CutBy::Row => Some(f64::from(place.j)),
         CutBy::Column => Some(f64::from(place.i)),

@@ -115,6 +115,8 @@ pub enum CutBy {
     Range,
     /// The true depth, metres.
     Depth,
+    /// The true range, metres; a depth tells the lost rays from the others as well.
+    RangeOrDepth,
     /// The row of the cell.
     Row,
     /// The column of the cell.

@@ -307,7 +307,7 @@ fn cut(
     let line = match by {
         CutBy::Row => Some("row"),
         CutBy::Column => Some("column"),
-        CutBy::Range | CutBy::Depth => None,
+        CutBy::Range | CutBy::Depth | CutBy::RangeOrDepth => None,
     };
     if let Some(line) = line {
         let end = if is_above { "last" } else { "first" };
@@ -331,6 +331,9 @@ fn cut(
     match held {
         Held::Constant(number) => {
             write!(f, "hits {beyond} {} have the length {}", metres(at), metres(number))
+        }
+        _ if by == CutBy::RangeOrDepth => {
+            write!(f, "hits {beyond} a range of {}, or a depth that goes with it, are lost", metres(at))
         }
         _ => write!(f, "hits {beyond} {} are lost", metres(at)),
     }

@@ -119,6 +119,16 @@ fn one_mistake_in_two_sensors_is_one_reason() {
     assert!(few_pyramids().diagnosis(&all.candidate).unwrap().reasons[0].is_everywhere);
 }
 
+/// Where what is farther is also deeper, nobody knows which of both cuts, and it is not said.
+#[test]
+fn a_cut_that_range_and_depth_fit_alike_is_told_of_both() {
+    let bench = few_pyramids();
+    let wrong = made(bench, &[("far hits lost, by range and depth alike", BEAM)]);
+    assert_eq!(bench.reasons(&wrong.candidate), ["beam-1: cut_off"]);
+    let words = bench.diagnosis(&wrong.candidate).expect("a reason").sentence();
+    assert!(words.contains("or a depth that goes with it, are lost"), "{words}");
+}
+
 /// The arithmetic is the program's: a sensor of which a handful of rays shows it has the same reason, whatever their number.
 #[test]
 fn single_precision_of_few_rays_is_that_of_the_other_sensors() {

@@ -83,6 +83,8 @@ fn all() -> Vec<Mistake> {
         cut(CutBy::Range, true, 12.5, 0, Held::NoHit),
         cut(CutBy::Depth, true, 12.5, 0, Held::NoHit),
         cut(CutBy::Range, false, 1.5, 0, Held::NoHit),
+        cut(CutBy::RangeOrDepth, true, 12.5, 0, Held::NoHit),
+        cut(CutBy::RangeOrDepth, false, 1.5, 0, Held::NoHit),
         cut(CutBy::Range, true, 12.5, 0, Held::Constant(12.5)),
         cut(CutBy::Row, true, 71.0, 1, Held::NoHit),
         cut(CutBy::Row, false, 0.0, 1, Held::NoHit),

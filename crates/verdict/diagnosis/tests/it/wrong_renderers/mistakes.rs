@@ -332,6 +332,9 @@ pub const MISTAKES: &[Make] = &[
         let share = 0.05 + 0.4 * m.random.share();
         clipped(m, CutBy::Range, false, share, false)
     }),
+    ("far hits lost, by range and depth alike", |m| {
+        share_of_both(m).map_or_else(Vec::new, |share| clipped(m, CutBy::Range, true, share, false))
+    }),
     ("last row lost", |m| lines(m, CutBy::Row, true, 1, Held::NoHit)),
     ("last row 0", |m| lines(m, CutBy::Row, true, 1, Held::Constant(0.0))),
     ("last row twice", |m| lines(m, CutBy::Row, true, 1, Held::Neighbour)),

@@ -383,6 +383,23 @@ fn lines(making: &mut Making<'_>, by: CutBy, is_above: bool, lines: u32, held: H
     vec![cut(held), cut(Held::Anything)]
 }
 
+/// The share of hits at which a cut by range and one by depth lose the same; `None` if there is no such place among many hits.
+fn share_of_both(making: &Making<'_>) -> Option<f64> {
+    let (ranges, depths) = (making.map.range.as_ref()?, making.map.depth.as_ref()?);
+    let both = |(i, j): (u32, u32)| ranges.at(i, j).get().zip(depths.at(i, j).get());
+    let mut all: Vec<(f64, f64)> = making.cells().filter_map(both).collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let is_both = |index: usize| {
+        let (kept, lost) = all.split_at(index + 1);
+        let deepest = kept.iter().map(|one| one.1).fold(f64::NEG_INFINITY, f64::max);
+        let shallowest = lost.iter().map(|one| one.1).fold(f64::INFINITY, f64::min);
+        deepest < shallowest
+    };
+    let places: Vec<usize> = (20..all.len().saturating_sub(20)).filter(|index| is_both(*index)).collect();
+    let index = places.get(places.len() / 2)?;
+    Some((*index as f64 + 0.5) / (all.len() - 1) as f64)
+}
+
 /// Hits beyond a length that half of the hits reach are lost, or have this length.
 fn clipped(making: &mut Making<'_>, by: CutBy, is_above: bool, share: f64, clamps: bool) -> Vec<Mistake> {
     let lengths = if by == CutBy::Range { &making.map.range } else { &making.map.depth };
@@ -401,6 +418,16 @@ fn clipped(making: &mut Making<'_>, by: CutBy, is_above: bool, share: f64, clamp
         all[..index].iter().rfind(|x| **x < at)
     };
     let next = lost.copied().unwrap_or(at);
+    // The ranges of what is lost and of what is kept: a cut by range and one by depth may lose the same.
+    let ranges = making.map.range.clone();
+    let (mut kept, mut gone): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
+    for (i, j) in making.cells() {
+        let range = ranges.as_ref().and_then(|ranges| ranges.at(i, j).get());
+        if let (Some(length), Some(range)) = (lengths.at(i, j).get(), range) {
+            let is_lost = if is_above { length > at } else { length < at };
+            if is_lost { &mut gone } else { &mut kept }.push(range);
+        }
+    }
     for (i, j) in making.cells() {
         if let Some(length) = lengths.at(i, j).get()
             && (if is_above { length > at } else { length < at })
@@ -416,5 +443,17 @@ fn clipped(making: &mut Making<'_>, by: CutBy, is_above: bool, share: f64, clamp
     let held = if clamps { Held::Constant(at) } else { Held::NoHit };
     let between = |k: u32| at + (next - at) * f64::from(k) / 16.0;
     let ends = if clamps { 0..=0 } else { 0..=16 };
-    ends.map(|k| Mistake::Cut { by, is_above, at: between(k), lines: 0, held }).collect()
+    let mut found: Vec<Mistake> =
+        ends.map(|k| Mistake::Cut { by, is_above, at: between(k), lines: 0, held }).collect();
+    kept.sort_by(f64::total_cmp);
+    gone.sort_by(f64::total_cmp);
+    let border = if is_above { kept.last().zip(gone.first()) } else { gone.last().zip(kept.first()) };
+    if let Some((low, high)) = border.filter(|(low, high)| low < high && !clamps) {
+        let by = CutBy::RangeOrDepth;
+        found.extend((0..=16).map(|k| {
+            let at = low + (high - low) * f64::from(k) / 16.0;
+            Mistake::Cut { by, is_above, at, lines: 0, held }
+        }));
+    }
+    found
 }
