@@ -64,7 +64,9 @@ impl Correction {
             | Mistake::SensorFrame => matches!(hit, Some(H::Point | H::Normal)),
             Mistake::Axes { of: Vectors::Points, .. } => hit == Some(H::Point),
             Mistake::Axes { of: Vectors::Normals, .. } => hit == Some(H::Normal),
-            Mistake::GlobalFrame | Mistake::PointsFromSensor => hit == Some(H::Point),
+            Mistake::GlobalFrame | Mistake::PointsFromSensor | Mistake::PointsMoved(_) => {
+                hit == Some(H::Point)
+            }
             Mistake::NormalsReversed | Mistake::NormalsNotUnit => hit == Some(H::Normal),
             Mistake::CosinesNegated | Mistake::AngleForCosine(_) => is_cosine,
             Mistake::CosinesExchanged(_) => is_cosine && channel.sensor != SensorId::Camera,
@@ -77,6 +79,7 @@ impl Correction {
             }
             // Depths in the camera are depths, too.
             Mistake::Rounded { of: Length::Depth | Length::All, .. }
+            | Mistake::HalfPrecision(Length::Depth | Length::All)
             | Mistake::Inverse(Length::Depth | Length::All)
                 if quantity == Quantity::CameraDepth =>
             {
@@ -85,6 +88,7 @@ impl Correction {
             Mistake::Affine { of, .. }
             | Mistake::FromPlane(of)
             | Mistake::Rounded { of, .. }
+            | Mistake::HalfPrecision(of)
             | Mistake::Inverse(of) => match of {
                 Length::Range => hit == Some(H::Range),
                 Length::Depth => hit == Some(H::Depth),
@@ -115,6 +119,7 @@ impl Correction {
             | Mistake::Axes { .. }
             | Mistake::SensorFrame
             | Mistake::PointsFromSensor
+            | Mistake::PointsMoved(_)
             | Mistake::GlobalFrame => 6,
             Mistake::CosinesExchanged(_) => 7,
             Mistake::OtherFluxModel | Mistake::AttenuationOn(_) => 8,
@@ -144,6 +149,7 @@ impl Correction {
             Mistake::Affine { of: Length::All, .. }
                 | Mistake::FromPlane(Length::All)
                 | Mistake::Rounded { of: Length::All, .. }
+                | Mistake::HalfPrecision(Length::All)
                 | Mistake::Inverse(Length::All)
         )
     }
@@ -182,6 +188,7 @@ impl Correction {
             return if self.is_miss(case, source) { Value::Nothing } else { value };
         }
         if let Mistake::Rounded { .. }
+        | Mistake::HalfPrecision(_)
         | Mistake::Cut { .. }
         | Mistake::HoldsBeam(_)
         | Mistake::BeamFluxExchanged
@@ -294,6 +301,7 @@ impl Correction {
             Mistake::SensorFrame if is_point => pose() * vector,
             Mistake::SensorFrame => pose().rotate(vector),
             Mistake::PointsFromSensor => vector + pose().position,
+            Mistake::PointsMoved(by) => vector - DVec3::from_array(by),
             Mistake::GlobalFrame => vector - scene.mesh().origin(),
             Mistake::NormalsReversed => -vector,
             Mistake::NormalsNotUnit => vector / vector.length(),

@@ -7,10 +7,10 @@ use crate::agree::is_near;
 use crate::case::Case;
 use crate::channel::{Channel, Value};
 use crate::correction::{Correction, FluxFactors, Table, corrected};
-use crate::lengths::lengths;
+use crate::lengths::{MAX_COSINE_OF_TWO_PLANES, lengths};
 use crate::mistake::{AngleUnit, Cosine, Leg, Length, LengthUnit, Mistake, Vectors};
 use crate::numbers::{middle, plainest};
-use crate::tally::MIN_CONFIRMING_RAYS;
+use crate::tally::{MIN_CONFIRMING_RAYS, MIN_WRONG_RAYS};
 use raypencil_judge::Quantity;
 use raypencil_scene::{FluxModel, HitQuantity, Image, Place, SensorId};
 
@@ -79,6 +79,7 @@ pub(crate) fn fixed(case: Case<'_>) -> Vec<Correction> {
     if scene.mesh().origin() != glam::DVec3::ZERO {
         mistakes.push(Mistake::GlobalFrame);
     }
+    mistakes.extend(moved_points(case));
     let [incidence, off_axis, emission] = Cosine::ALL;
     for held in [
         [emission, off_axis, incidence],
@@ -106,6 +107,41 @@ pub(crate) fn fixed(case: Case<'_>) -> Vec<Correction> {
         quantities.len() > usize::from(one.is_of_all_lengths())
     });
     corrections
+}
+
+/// The vector by which all points are off, where they lie in several planes: in one plane another place of the sensor says the same.
+fn moved_points(case: Case<'_>) -> Option<Mistake> {
+    let (mut off, mut ulp, mut largest) = ([const { Vec::new() }; 3], 0.0_f64, 0.0_f64);
+    let (mut first_normal, mut has_planes) = (None, false);
+    for channel in case.channels().into_iter().filter(|channel| channel.item.quantity == Quantity::Point) {
+        let storage = case.recorded.storage.get(&(channel.sensor, channel.item)).copied();
+        for place in rays(case, channel.sensor) {
+            let [stated, exact] =
+                [&case.recorded.answers, case.truth.answers()].map(|answers| channel.at(answers, place));
+            let (Value::Vector(stated), Value::Vector(exact), Some(hit)) =
+                (stated, exact, case.truth.hit(place))
+            else {
+                continue;
+            };
+            let first = *first_normal.get_or_insert(hit.normal);
+            has_planes |= first.dot(hit.normal) < MAX_COSINE_OF_TWO_PLANES;
+            for k in 0..3 {
+                off[k].push(stated[k] - exact[k]);
+                ulp = ulp.max(storage.map_or(0.0, |storage| storage.ulp(stated[k])));
+                largest = largest.max(exact[k].abs()).max(stated[k].abs());
+            }
+        }
+    }
+    let rounding = ulp + 8.0 * f64::EPSILON * largest;
+    let mut by = [0.0; 3];
+    for (by, off) in by.iter_mut().zip(&mut off) {
+        let (median, spread) = middle(off, MIN_WRONG_RAYS as usize)?;
+        if spread > 2.0 * rounding {
+            return None;
+        }
+        *by = plainest(median, 2.0 * rounding);
+    }
+    (has_planes && by != [0.0; 3]).then_some(Mistake::PointsMoved(by))
 }
 
 /// Whether hidden hits are called visible, and visible ones hidden: else another mistake says the same.

@@ -31,6 +31,10 @@ pub(crate) fn foretold(
             }
             _ => return stated,
         },
+        Mistake::HalfPrecision(_) => match (stated, exact) {
+            (Value::Number(stated), Value::Number(exact)) => is_half(stated, exact),
+            _ => return stated,
+        },
         Mistake::Cut { by, is_above, at, held, .. } => {
             let is_beyond = cut_number(case, by, place).is_some_and(|number| match (by, is_above) {
                 (CutBy::Row | CutBy::Column, true) => number >= at,
@@ -125,6 +129,12 @@ pub(crate) fn is_rounded(storage: Storage, stated: f64, exact: f64, quantum: f64
     let is_next =
         if down { (-slack..quantum + slack).contains(&error) } else { error.abs() <= 0.5 * quantum + slack };
     (stated - multiple).abs() <= slack && is_next
+}
+
+/// Whether a stated length is a number of half precision, and the one that the exact length is rounded to.
+pub(crate) fn is_half(stated: f64, exact: f64) -> bool {
+    let ulp = Storage::F16.ulp(stated);
+    (stated / ulp).fract() == 0.0 && (stated - exact).abs() <= 0.5 * ulp * (1.0 + f64::EPSILON)
 }
 
 /// Whether a cell beyond a cut has what stands there.

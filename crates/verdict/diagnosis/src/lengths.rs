@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use crate::case::Case;
 use crate::channel::{Value, hit_quantity};
 use crate::correction::{Correction, corrected};
-use crate::forward::is_rounded;
+use crate::forward::{is_half, is_rounded};
 use crate::mistake::{Length, Mistake};
 use crate::numbers::{middle, plainest, plainest_between};
 use raypencil_files::Storage;
@@ -154,11 +154,22 @@ impl Pairs {
         if stated.len() < MIN_ROUNDED_LENGTHS {
             return None;
         }
-        quanta().into_iter().filter(|quantum| *quantum >= QUANTUM_DIGITS * self.ulp).find_map(|quantum| {
-            let is = |down: bool| share(quantum, down) >= MIN_SHARE_OF_MULTIPLES;
-            let down = if is(false) { Some(false) } else { is(true).then_some(true) };
-            down.map(|down| Mistake::Rounded { of: self.of, quantum, down })
-        })
+        // Within one power of two half precision is a grid.
+        let halves = self.values.iter().filter(|(stated, exact)| is_half(*stated, *exact)).count();
+        let of_halves = halves as f64 / self.values.len() as f64;
+        let found = quanta().into_iter().filter(|quantum| *quantum >= QUANTUM_DIGITS * self.ulp).find_map(
+            |quantum| {
+                let is = |down: bool| share(quantum, down) >= MIN_SHARE_OF_MULTIPLES;
+                let down = if is(false) { Some(false) } else { is(true).then_some(true) };
+                down.map(|down| (quantum, down))
+            },
+        );
+        let is_plainer = |(quantum, down): &(f64, bool)| share(*quantum, *down) >= of_halves;
+        match found.filter(is_plainer) {
+            Some((quantum, down)) => Some(Mistake::Rounded { of: self.of, quantum, down }),
+            None if of_halves >= MIN_SHARE_OF_MULTIPLES => Some(Mistake::HalfPrecision(self.of)),
+            None => found.map(|(quantum, down)| Mistake::Rounded { of: self.of, quantum, down }),
+        }
     }
 }
 
@@ -186,6 +197,7 @@ pub(crate) fn lengths(case: Case<'_>, places: &[Place], base: Option<&Correction
         let with = |of| match *mistake {
             Mistake::Affine { factor, offset, .. } => Mistake::Affine { of, factor, offset },
             Mistake::Rounded { quantum, down, .. } => Mistake::Rounded { of, quantum, down },
+            Mistake::HalfPrecision(_) => Mistake::HalfPrecision(of),
             other => other,
         };
         depths.contains(&with(Length::Depth)).then(|| with(Length::All))

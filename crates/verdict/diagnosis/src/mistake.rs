@@ -200,6 +200,8 @@ pub enum Mistake {
     SensorFrame,
     /// Points are counted from the sensor, in the axes of the scene.
     PointsFromSensor,
+    /// Points are off by one vector, metres, in the axes of the scene.
+    PointsMoved([f64; 3]),
     /// Points are in the global frame: the scene origin is added.
     GlobalFrame,
     /// A length is one over the true one.
@@ -280,6 +282,8 @@ pub enum Mistake {
         /// Whether it is rounded down; else to the nearest multiple.
         down: bool,
     },
+    /// A length went through half precision: 11 significant bits.
+    HalfPrecision(Length),
     /// Answers beyond a number are lost.
     Cut {
         /// By what.
@@ -380,6 +384,7 @@ impl Mistake {
             Self::Axes { .. } => "axes",
             Self::SensorFrame => "sensor_frame",
             Self::PointsFromSensor => "points_from_sensor",
+            Self::PointsMoved(_) => "points_moved",
             Self::GlobalFrame => "global_frame",
             Self::Inverse(_) => "inverse",
             Self::HoldsBeam(_) => "other_beam",
@@ -419,6 +424,7 @@ impl Mistake {
             Self::Affine { .. } => "factor_and_offset",
             Self::FromPlane(_) => "from_plane",
             Self::Rounded { .. } => "rounded",
+            Self::HalfPrecision(_) => "half_precision",
             Self::Cut { by: CutBy::Row | CutBy::Column, held: Held::Neighbour, .. } => "line_doubled",
             Self::Cut { by: CutBy::Row | CutBy::Column, held: Held::Anything, .. } => "lines_wrong",
             Self::Cut { by: CutBy::Row | CutBy::Column, .. } => "lines_lost",
@@ -454,6 +460,7 @@ impl Mistake {
             | Self::Unit(_)
             | Self::SensorFrame
             | Self::PointsFromSensor
+            | Self::PointsMoved(_)
             | Self::GlobalFrame
             | Self::NormalsReversed
             | Self::NormalsNotUnit
@@ -478,9 +485,11 @@ impl Mistake {
                 (GUIDE, "The contract for rays")
             }
             Self::CornerRays { .. } => (FILES, "Cells"),
-            Self::Affine { .. } | Self::FromPlane(_) | Self::Rounded { .. } | Self::Inverse(_) => {
-                (REASONS, "Lengths")
-            }
+            Self::Affine { .. }
+            | Self::FromPlane(_)
+            | Self::Rounded { .. }
+            | Self::HalfPrecision(_)
+            | Self::Inverse(_) => (REASONS, "Lengths"),
             Self::Cut { .. } => (REASONS, "Cuts and borders"),
             Self::PrincipalPoint { .. }
             | Self::FocalLength { .. }

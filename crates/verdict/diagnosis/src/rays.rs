@@ -220,7 +220,8 @@ impl<'t> CastTrial<'t> {
                 for (near, place) in own {
                     let exact = channel.at(self.case.truth.answers(), *place);
                     let value = corrected(self.case, *channel, *place, &corrections);
-                    *near &= value.is_some_and(|value| is_near(self.case, *channel, *place, value, exact));
+                    // A ray that stands in no cell shows nothing either.
+                    *near &= value.is_none_or(|value| is_near(self.case, *channel, *place, value, exact));
                 }
             }
             count(&near)

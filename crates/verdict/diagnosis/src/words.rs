@@ -87,6 +87,9 @@ impl fmt::Display for Mistake {
             Self::PointsFromSensor => {
                 f.write_str("points are counted from the sensor: they are counted from the scene's origin")
             }
+            Self::PointsMoved(by) => {
+                write!(f, "points are off by {} m: they are counted from the scene's origin", three(*by))
+            }
             Self::GlobalFrame => {
                 f.write_str("points are in the global frame: the scene frame starts at the scene origin")
             }
@@ -206,6 +209,10 @@ impl fmt::Display for Mistake {
                 let (subject, verb) = subject(*of);
                 let down = if *down { " down" } else { "" };
                 write!(f, "{subject} {verb} rounded{down} to multiples of {}", metres(*quantum))
+            }
+            Self::HalfPrecision(of) => {
+                let (subject, verb) = subject(*of);
+                write!(f, "{subject} {verb} rounded to half precision, 11 bits: single precision has 24")
             }
             Self::Cut { by, is_above, at, lines, held } => cut(f, *by, *is_above, *at, *lines, *held),
             Self::PrincipalPoint { stated, truth } => {

@@ -76,6 +76,8 @@ fn all() -> Vec<Mistake> {
         Mistake::Affine { of: Length::Depth, factor: 1.001, offset: 0.0 },
         Mistake::Affine { of: Length::All, factor: 1.001, offset: 0.5 },
         Mistake::Affine { of: Length::All, factor: 1.001, offset: -0.5 },
+        Mistake::PointsMoved([0.0, 0.0, -1.5]),
+        Mistake::HalfPrecision(Length::Range),
         Mistake::FromPlane(Length::Range),
         Mistake::FromPlane(Length::All),
         Mistake::Rounded { of: Length::Range, quantum: 0.001, down: false },

@@ -91,6 +91,11 @@ pub const MISTAKES: &[Make] = &[
         m.vectors(true, |_, _, p| p - position);
         if position == DVec3::ZERO { Vec::new() } else { vec![Mistake::PointsFromSensor] }
     }),
+    ("points moved", |m| {
+        let by = [0.25 * (m.random.share() * 16.0).floor(), 0.0, 1.5];
+        m.vectors(true, |_, _, p| p + DVec3::from_array(by));
+        vec![Mistake::PointsMoved(by)]
+    }),
     ("normals inward", |m| {
         m.vectors(false, |_, _, n| -n);
         vec![Mistake::NormalsReversed]
@@ -316,6 +321,10 @@ pub const MISTAKES: &[Make] = &[
         rounded(m, Length::Range, quantum, true)
     }),
     ("lengths rounded", |m| rounded(m, Length::All, 1e-3, false)),
+    ("half precision", |m| {
+        m.lengths(Length::All, |_, _, x| in_half_precision(x));
+        parts(Length::All).map(Mistake::HalfPrecision).collect()
+    }),
     ("far hits lost", |m| {
         let share = 0.5 + 0.45 * m.random.share();
         clipped(m, CutBy::Range, true, share, false)

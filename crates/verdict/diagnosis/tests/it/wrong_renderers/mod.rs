@@ -356,6 +356,13 @@ fn rounded(making: &mut Making<'_>, of: Length, quantum: f64, down: bool) -> Vec
     parts(of).map(|of| Mistake::Rounded { of, quantum, down }).collect()
 }
 
+/// The nearest number of 11 significant bits.
+fn in_half_precision(x: f64) -> f64 {
+    let power = f64::from_bits(x.to_bits() & 0x7ff0_0000_0000_0000);
+    let ulp = power / 1024.0;
+    (x / ulp).round_ties_even() * ulp
+}
+
 /// Lines at a border with something else in them.
 fn lines(making: &mut Making<'_>, by: CutBy, is_above: bool, lines: u32, held: Held) -> Vec<Mistake> {
     let (width, height) = making.size();

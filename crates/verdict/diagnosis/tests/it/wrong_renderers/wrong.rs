@@ -137,6 +137,7 @@ fn is_turn_of_all<'m>(made: impl Iterator<Item = &'m [Mistake]>, told: &Mistake)
         Mistake::AxesYUp => Some(([0, 2, 1], [1, -1, 1])),
         Mistake::AxesYUpInverse => Some(([0, 2, 1], [1, 1, -1])),
         Mistake::Axes { from, sign, .. } => Some((*from, *sign)),
+        Mistake::NormalsReversed => Some(([0, 1, 2], [-1; 3])),
         _ => None,
     };
     // Component k of what it was is `sign` times component `from` of what it became.
