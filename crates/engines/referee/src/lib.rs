@@ -123,6 +123,7 @@ mod rounding;
 mod ruling;
 mod shares;
 mod sheet;
+mod short_integer;
 mod subdivision;
 mod surface_margin;
 mod through_point;

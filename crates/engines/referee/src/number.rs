@@ -10,6 +10,8 @@ use std::cmp::Ordering;
 
 use dashu_int::{IBig, Sign, UBig};
 
+use crate::short_integer::ShortInteger;
+
 /// A number in which a polynomial can be evaluated.
 pub(crate) trait Number: Clone {
     /// The number that equals this finite f64.
@@ -171,22 +173,80 @@ impl Number for Interval {
 /// An exact dyadic rational: `mantissa * 2^exponent`.
 #[derive(Debug, Clone)]
 pub(crate) struct Dyadic {
-    mantissa: IBig,
+    mantissa: Mantissa,
     exponent: i64,
+}
+
+#[derive(Debug, Clone)]
+enum Mantissa {
+    Short(ShortInteger),
+    Long(IBig),
+}
+
+impl Mantissa {
+    fn long(&self) -> IBig {
+        match self {
+            Self::Short(short) => short.to_long(),
+            Self::Long(long) => long.clone(),
+        }
+    }
+
+    fn is_zero(&self) -> bool {
+        self.sign() == Ordering::Equal
+    }
+
+    #[inline]
+    fn sign(&self) -> Ordering {
+        match self {
+            Self::Short(short) => short.sign(),
+            Self::Long(long) => long.cmp(&IBig::ZERO),
+        }
+    }
+
+    fn negated(&self) -> Self {
+        match self {
+            Self::Short(short) => Self::Short(short.negated()),
+            Self::Long(long) => Self::Long(-long),
+        }
+    }
 }
 
 impl Dyadic {
     /// The sign, the magnitude of the mantissa, and the exponent of 2.
     pub(crate) fn parts(&self) -> (Sign, UBig, i64) {
-        let (sign, magnitude) = self.mantissa.clone().into_parts();
+        let (sign, magnitude) = match &self.mantissa {
+            Mantissa::Short(short) => short.parts(),
+            Mantissa::Long(long) => long.clone().into_parts(),
+        };
         (sign, magnitude, self.exponent)
     }
 
-    /// Both mantissas, shifted to the smaller of the two exponents.
-    fn aligned(&self, other: &Self) -> (IBig, IBig, i64) {
+    /// The sum, or the difference.
+    #[inline]
+    fn sum(&self, other: &Self, is_difference: bool) -> Self {
         let exponent = self.exponent.min(other.exponent);
-        let shifted = |number: &Self| &number.mantissa << (number.exponent - exponent) as usize;
-        (shifted(self), shifted(other), exponent)
+        let shifts = [self, other].map(|number| (number.exponent - exponent) as usize);
+        if let (Mantissa::Short(a), Mantissa::Short(b)) = (&self.mantissa, &other.mantissa)
+            && let (Some(a), Some(b)) = (a.shifted(shifts[0]), b.shifted(shifts[1]))
+            && let Some(sum) = a.plus(&if is_difference { b.negated() } else { b })
+        {
+            return Self { mantissa: Mantissa::Short(sum), exponent };
+        }
+        self.long_sum(other, is_difference, exponent, shifts)
+    }
+
+    #[cold]
+    fn long_sum(&self, other: &Self, is_difference: bool, exponent: i64, shifts: [usize; 2]) -> Self {
+        // A 0 of some exponent makes no other number longer.
+        if other.mantissa.is_zero() {
+            return self.clone();
+        }
+        if self.mantissa.is_zero() {
+            let mantissa = if is_difference { other.mantissa.negated() } else { other.mantissa.clone() };
+            return Self { mantissa, ..*other };
+        }
+        let (a, b) = (self.mantissa.long() << shifts[0], other.mantissa.long() << shifts[1]);
+        Self { mantissa: Mantissa::Long(if is_difference { a - b } else { a + b }), exponent }
     }
 }
 
@@ -194,32 +254,42 @@ impl Number for Dyadic {
     fn of(value: f64) -> Self {
         debug_assert!(value.is_finite(), "the contract's numbers are finite");
         let bits = value.to_bits();
-        let (biased, fraction) = ((bits >> 52) as i64 & 0x7ff, (bits & ((1 << 52) - 1)) as i64);
+        let (biased, fraction) = ((bits >> 52) as i64 & 0x7ff, bits & ((1 << 52) - 1));
         let (magnitude, exponent) =
             if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
         // Drop trailing zeros, so that integers stay short.
         let zeros = if magnitude == 0 { 0 } else { magnitude.trailing_zeros() };
-        let mantissa =
-            IBig::from(if value.is_sign_negative() { -(magnitude >> zeros) } else { magnitude >> zeros });
-        Self { mantissa, exponent: if magnitude == 0 { 0 } else { exponent + i64::from(zeros) } }
+        let mantissa = ShortInteger::of(magnitude >> zeros, value.is_sign_negative());
+        Self {
+            mantissa: Mantissa::Short(mantissa),
+            exponent: if magnitude == 0 { 0 } else { exponent + i64::from(zeros) },
+        }
     }
 
+    #[inline]
     fn add(&self, other: &Self) -> Self {
-        let (a, b, exponent) = self.aligned(other);
-        Self { mantissa: a + b, exponent }
+        self.sum(other, false)
     }
 
+    #[inline]
     fn sub(&self, other: &Self) -> Self {
-        let (a, b, exponent) = self.aligned(other);
-        Self { mantissa: a - b, exponent }
+        self.sum(other, true)
     }
 
+    #[inline]
     fn mul(&self, other: &Self) -> Self {
-        Self { mantissa: &self.mantissa * &other.mantissa, exponent: self.exponent + other.exponent }
+        let exponent = self.exponent + other.exponent;
+        if let (Mantissa::Short(a), Mantissa::Short(b)) = (&self.mantissa, &other.mantissa)
+            && let Some(product) = a.times(b)
+        {
+            return Self { mantissa: Mantissa::Short(product), exponent };
+        }
+        Self { mantissa: Mantissa::Long(self.mantissa.long() * other.mantissa.long()), exponent }
     }
 
+    #[inline]
     fn sign(&self) -> Option<Ordering> {
-        Some(self.mantissa.cmp(&IBig::ZERO))
+        Some(self.mantissa.sign())
     }
 }
 

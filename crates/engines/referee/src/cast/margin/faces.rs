@@ -6,16 +6,17 @@
 //! conditions: `region` finds the least displacement at which all hold. Several nearest faces stay together only if
 //! they lie in one plane; otherwise the least displacement is 0.
 
+use std::cell::OnceCell;
 use std::collections::BTreeSet;
 
-use raypencil_scene::{FaceId, Side, Sides};
+use raypencil_scene::{FaceId, Side};
 
-use super::super::query_ray::QueryRay;
 use super::super::triangle::Triangle;
-use super::flat::{FlatFace, Linear};
+use super::flat::{FlatFace, Linear, at_or_before};
 use super::frame::{Frame, FrameNumbers};
 use super::nearby::Nearby;
-use super::region::{Bounded, least_size};
+use super::region::{Bounded, LazyLinear, least_size};
+use super::view::View;
 use super::{ExactCast, within};
 use crate::margin::Margin;
 use crate::number::{Dyadic, Interval, Number};
@@ -41,12 +42,11 @@ enum EventKind {
 }
 
 impl ExactCast<'_> {
-    pub(super) fn face_margin(&self, frame: &Frame<'_>, nearest: &[Triangle], sides: Sides) -> Margin {
+    pub(super) fn face_margin(&self, frame: &Frame<'_>, nearest: &[Triangle], view: &View<'_>) -> Margin {
         let cap = self.tree.diagonal;
-        let query = QueryRay::new(frame.ray);
-        let seen = |face: &'_ Triangle| face.seen_side(&query);
         let nearest: Vec<SeenFace<'_>> =
-            nearest.iter().filter_map(|face| Some(SeenFace { face, side: seen(face)? })).collect();
+            nearest.iter().filter_map(|face| Some(SeenFace { face, side: view.side(face)? })).collect();
+        let first = nearest.first().map(|first| InPlane::new(*first, frame));
         // Thousands of faces may lie in one place: those with the same corners have the same conditions.
         let mut places = BTreeSet::new();
         let bits = |face: &Triangle| face.corners.map(|corner| corner.to_array().map(f64::to_bits));
@@ -81,14 +81,16 @@ impl ExactCast<'_> {
                 if own.contains(&face.id) {
                     continue;
                 }
-                let Some(side) = seen(face).filter(|side| sides.include(*side)) else { continue };
-                let entering = SeenFace { face, side };
+                let Some(side) = view.side_hit(face) else { continue };
+                let entering = Entering::new(InPlane::new(SeenFace { face, side }, frame), first.as_ref());
                 // An edge shared with a nearest face gives the same size but for rounding: no new event, but the proven size may
                 // be the smaller one.
                 let enough = lo * (1.0 - 1.0 / (1u64 << 30) as f64);
-                if let Some(event) = entering.event(frame, nearest.first(), lo) {
-                    lo = lo.min(event.size[0]);
-                    events.extend((event.size[0] < enough).then_some(event));
+                if let Some(size) = entering.size(lo) {
+                    lo = lo.min(size[0]);
+                    if size[0] < enough {
+                        events.push(Event { size, kind: EventKind::Enters(entering.rounded()) });
+                    }
                 }
             }
         }
@@ -100,7 +102,7 @@ impl ExactCast<'_> {
         let hi = events.iter().map(|event| event.size[1]).fold(cap, f64::min);
         let hi = if lo == 0.0 { 0.0 } else { hi };
         let ids: Vec<_> = nearest.iter().map(|one| one.face.id).collect();
-        let differs = |by: [f64; 2]| self.first_moved(frame.ray, sides, by) != ids;
+        let differs = |by: [f64; 2]| self.first_moved(frame.ray, view.sides(), by) != ids;
         let least = 2.0 * self.smallest_size(frame);
         within([lo, hi], self.face_witness(frame, &events, lo, cap, differs), least, cap)
     }
@@ -243,24 +245,76 @@ impl SeenFace<'_> {
         let order = self.flat(exact).at_or_before(&other.flat(exact));
         [&order.c, &order.x, &order.y].iter().all(|part| part.sign() == Some(std::cmp::Ordering::Equal))
     }
+}
 
-    /// The conditions under which this face is met at or before the nearest.
-    fn conditions<T: Number>(&self, frame: &FrameNumbers<T>, nearest: Option<&Self>) -> Vec<Linear<T>> {
-        let flat = self.flat(frame);
-        let mut conditions = flat.conditions(frame);
-        conditions.extend(nearest.map(|nearest| flat.at_or_before(&nearest.flat(frame))));
-        conditions
+/// A face in the frame, with what is made of it more than once.
+struct InPlane<'a> {
+    frame: &'a Frame<'a>,
+    seen: SeenFace<'a>,
+    fast: FlatFace<Interval>,
+    fast_height: Linear<Interval>,
+    exact: OnceCell<(FlatFace<Dyadic>, Linear<Dyadic>)>,
+}
+
+impl<'a> InPlane<'a> {
+    fn new(seen: SeenFace<'a>, frame: &'a Frame<'a>) -> Self {
+        let fast = seen.flat(&frame.fast);
+        Self { frame, seen, fast_height: fast.height(), fast, exact: OnceCell::new() }
     }
 
-    /// The entry of this face among the nearest, if it happens within `enough`.
-    fn event(&self, frame: &Frame<'_>, nearest: Option<&Self>, enough: f64) -> Option<Event> {
-        let fast = self.conditions(&frame.fast, nearest);
-        if in_units(least_size(&fast)?, frame)[0] >= enough {
-            return None;
+    fn exact(&self) -> &(FlatFace<Dyadic>, Linear<Dyadic>) {
+        self.exact.get_or_init(|| {
+            let flat = self.seen.flat(self.frame.exact());
+            let height = flat.height();
+            (flat, height)
+        })
+    }
+}
+
+/// The conditions under which a face is met at or before the nearest.
+struct Entering<'a> {
+    face: InPlane<'a>,
+    nearest: Option<&'a InPlane<'a>>,
+    conditions: Vec<LazyLinear>,
+}
+
+impl<'a> Entering<'a> {
+    fn new(face: InPlane<'a>, nearest: Option<&'a InPlane<'a>>) -> Self {
+        let mut fast = face.fast.conditions_with(&face.frame.fast, &face.fast_height);
+        fast.extend(nearest.map(|nearest| {
+            at_or_before([&face.fast_height, &nearest.fast_height], [&face.fast.area, &nearest.fast.area])
+        }));
+        let conditions = fast.into_iter().map(LazyLinear::new).collect();
+        Self { face, nearest, conditions }
+    }
+
+    /// A condition without rounding.
+    fn exact(&self, index: usize) -> Linear<Dyadic> {
+        let (flat, height) = self.face.exact();
+        let numbers = self.face.frame.exact();
+        match (index, &numbers.to) {
+            (0..=2, _) => flat.edge(index),
+            (3, _) => flat.not_before_with(&numbers.from, height),
+            (4, Some(to)) => flat.not_before_with(to, height).negated(),
+            _ => {
+                let (first, first_height) = self.nearest.unwrap_or(&self.face).exact();
+                at_or_before([height, first_height], [&flat.area, &first.area])
+            }
         }
-        let exact = self.conditions(frame.exact(), nearest);
-        let size = in_units(least_size(&exact)?, frame);
-        let conditions = exact.iter().map(|condition| rounded_exact(condition, frame)).collect();
-        (size[0] < enough).then_some(Event { size, kind: EventKind::Enters(conditions) })
+    }
+
+    /// Bounds of the size at which the face enters, if that is within `enough`.
+    fn size(&self, enough: f64) -> Option<[f64; 2]> {
+        let frame = self.face.frame;
+        let is_enough = |size: f64| in_units([size; 2], frame)[0] >= enough;
+        least_size(&self.conditions, |index| self.exact(index), is_enough).map(|size| in_units(size, frame))
+    }
+
+    /// All conditions in f64.
+    fn rounded(&self) -> Vec<Linear<f64>> {
+        let exact = |(index, condition): (usize, &LazyLinear)| {
+            rounded_exact(condition.exact(|| self.exact(index)), self.face.frame)
+        };
+        self.conditions.iter().enumerate().map(exact).collect()
     }
 }

@@ -76,7 +76,12 @@ impl<T: Number> FlatFace<T> {
 
     /// Not negative where the face is met no earlier than D t = `from`.
     pub(super) fn not_before(&self, from: &T) -> Linear<T> {
-        let mut height = self.height();
+        self.not_before_with(from, &self.height())
+    }
+
+    /// The same where the [`height`](Self::height) is known.
+    pub(super) fn not_before_with(&self, from: &T, height: &Linear<T>) -> Linear<T> {
+        let mut height = height.clone();
         height.c = height.c.sub(&self.area.mul(from));
         height
     }
@@ -88,16 +93,30 @@ impl<T: Number> FlatFace<T> {
 
     /// Not negative where the face's plane is met at or before the other's.
     pub(super) fn at_or_before(&self, other: &Self) -> Linear<T> {
-        other.height().scaled(&self.area).sub(&self.height().scaled(&other.area))
+        at_or_before([&self.height(), &other.height()], [&self.area, &other.area])
     }
 
     /// The conditions under which the displaced ray meets the face: three edges, and both ends of the ray.
     pub(super) fn conditions(&self, frame: &FrameNumbers<T>) -> Vec<Linear<T>> {
-        let mut conditions: Vec<Linear<T>> = (0..3).map(|k| self.edge(k)).collect();
-        conditions.push(self.not_before(&frame.from));
-        conditions.extend(frame.to.as_ref().map(|to| self.not_after(to)));
+        self.conditions_with(frame, &self.height())
+    }
+
+    /// The same where the [`height`](Self::height) is known.
+    pub(super) fn conditions_with(&self, frame: &FrameNumbers<T>, height: &Linear<T>) -> Vec<Linear<T>> {
+        let mut conditions = Vec::with_capacity(6);
+        conditions.extend((0..3).map(|k| self.edge(k)));
+        conditions.push(self.not_before_with(&frame.from, height));
+        conditions.extend(frame.to.as_ref().map(|to| self.not_before_with(to, height).negated()));
         conditions
     }
+}
+
+/// Not negative where the first of two planes is met at or before the second, by their faces' heights and areas.
+pub(super) fn at_or_before<T: Number>(
+    [one, other]: [&Linear<T>; 2],
+    [of_one, of_other]: [&T; 2],
+) -> Linear<T> {
+    other.scaled(of_one).sub(&one.scaled(of_other))
 }
 
 fn edge<T: Number>(corners: &[Point<T>; 3], k: usize) -> Linear<T> {

@@ -128,6 +128,18 @@ impl<'r> Frame<'r> {
         })
     }
 
+    /// A vertex in plain f64: a, b and the range, each off by less than [`slack`](Self::slack).
+    #[inline]
+    pub(super) fn shown(&self, vertex: DVec3) -> DVec3 {
+        let from_origin = vertex - self.rounded.origin;
+        DVec3::from_array(self.rounded.rows.map(|row| row.dot(from_origin)))
+    }
+
+    /// More than the error of what [`shown`](Self::shown) gives, if no coordinate of a vertex is above `largest`.
+    pub(super) fn slack(&self, largest: f64) -> f64 {
+        3.0 * ROUNDED_SLACK * largest.max(self.rounded.origin.abs().max_element())
+    }
+
     /// Whether a face's picture may contain the displacement (a, b), or come as near as `slack`.
     #[inline]
     pub(super) fn may_show(&self, corners: &[DVec3; 3], [a, b]: [f64; 2], slack: f64) -> bool {
@@ -143,9 +155,19 @@ impl<'r> Frame<'r> {
         low.x <= a && a <= high.x && low.y <= b && b <= high.y
     }
 
+    /// |d|: a range over t.
+    pub(super) fn length_of_direction(&self) -> f64 {
+        QueryRay::length(self.ray)
+    }
+
+    /// A range that is not before the start of the ray.
+    pub(super) fn range_after_start(&self) -> f64 {
+        self.ray.t_min * self.length_of_direction() * (1.0 + ROUNDED_SLACK)
+    }
+
     /// The least and the greatest range of a hit within the ray's ends, with slack.
     pub(super) fn ranges(&self) -> [f64; 2] {
-        let length = QueryRay::length(self.ray);
+        let length = self.length_of_direction();
         let slack = ROUNDED_SLACK;
         [self.ray.t_min * length * (1.0 - slack), self.ray.t_max * length * (1.0 + slack)]
     }

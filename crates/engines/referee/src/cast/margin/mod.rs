@@ -8,9 +8,11 @@
 //! flat       a face in it, and its conditions as linear functions of the displacement
 //! region     the least displacement at which some linear conditions hold
 //! seams      which edges two faces continue, and in which parts of the mesh there are only such
+//! view       which sides of faces the ray sees
 //! nearby     faces in the order of the displacement that they need
 //! faces      the margin of the set of nearest faces
 //! segment    a piece of a face's border, and what of it is hidden
+//! screen     whether a surface hides an edge wholly, in plain f64
 //! hidden     how far a surface hides such a piece, without exact arithmetic
 //! surface    the margin of the surface: the nearest t jumps
 //! ```
@@ -29,9 +31,11 @@ mod frame;
 mod hidden;
 mod nearby;
 mod region;
+mod screen;
 mod seams;
 mod segment;
 mod surface;
+mod view;
 
 use raypencil_scene::{CastRay, Reading, Sides};
 
@@ -40,7 +44,9 @@ use crate::displacement::Displacement;
 use crate::margin::{Margin, Margins};
 pub(super) use faces::onto_face;
 pub(super) use frame::Frame;
+use screen::Screen;
 pub(super) use seams::Seams;
+use view::View;
 
 /// The margin of an answer that changes if either of two does.
 fn of_either(one: Margin, other: Margin) -> Margin {
@@ -96,9 +102,18 @@ impl ExactCast<'_> {
     fn margins_between_ends(&self, ray: &CastRay, sides: Sides) -> Margins {
         let frame = Frame::new(ray);
         let nearest = self.nearest(ray, sides);
-        let face = self.face_margin(&frame, &nearest, sides);
+        let view = View::new(self.mesh, self.seams(), ray, sides);
+        let face = self.face_margin(&frame, &nearest, &view);
         // Where nothing is hit, what changes the faces changes the surface.
-        let surface = if nearest.is_empty() { face } else { self.surface_margin(&frame, face.lo, sides) };
+        if nearest.is_empty() {
+            return Margins { face, surface: face };
+        }
+        let screen = Screen::new(&frame, self.tree.largest_coordinate);
+        let surface = self.surface_margin(&frame, face.lo, &view, screen.as_ref());
         Margins { face, surface }
     }
 }
+
+#[cfg(test)]
+#[path = "../../../tests/unit/cast_margin_paths.rs"]
+mod tests;

@@ -6,6 +6,7 @@
 //! two that make X or Y vanish; or three that make both vanish with C < 0, which proves that nothing fulfils the
 //! conditions. So all singles, pairs and triples are tried. Any of them is a valid lower bound, certain or not.
 
+use std::cell::OnceCell;
 use std::cmp::Ordering;
 
 use super::flat::Linear;
@@ -49,87 +50,161 @@ impl Bounded for Dyadic {
     }
 }
 
-fn is_negative<T: Number>(x: &T) -> bool {
-    x.sign() == Some(Ordering::Less)
+/// A condition in intervals, and without rounding where that was needed.
+#[derive(Debug)]
+pub(super) struct LazyLinear {
+    fast: Linear<Interval>,
+    exact: OnceCell<Linear<Dyadic>>,
 }
 
-fn is_zero<T: Number>(x: &T) -> bool {
-    x.sign() == Some(Ordering::Equal)
+impl LazyLinear {
+    pub(super) fn new(fast: Linear<Interval>) -> Self {
+        Self { fast, exact: OnceCell::new() }
+    }
+
+    /// The condition without rounding, which `form` gives.
+    pub(super) fn exact(&self, form: impl FnOnce() -> Linear<Dyadic>) -> &Linear<Dyadic> {
+        self.exact.get_or_init(form)
+    }
 }
 
-/// Bounds of the least size, in D times the mesh's unit, of a displacement at which all conditions hold; `None` if
-/// certainly none exists. The upper bound is valid in exact numbers only: in intervals doubtful conditions are left out.
-pub(super) fn least_size<T: Bounded>(conditions: &[Linear<T>]) -> Option<[f64; 2]> {
-    let mut bounds = [0.0_f64; 2];
-    // -C / (|X| + |Y|), where C is certainly negative.
-    let mut prove = |c: &T, x: &T, y: &T| -> bool {
-        let slope = x.abs().add(&y.abs());
-        if is_zero(&slope) {
-            return false;
+/// A basic solution of the dual.
+#[derive(Debug, Clone, Copy)]
+enum Weights {
+    One(usize),
+    /// Two conditions, with weights that make X vanish, or else Y.
+    Two(usize, usize, bool),
+}
+
+impl Weights {
+    /// Of so many conditions.
+    fn all(count: usize) -> impl Iterator<Item = Self> {
+        let pairs = (0..count).flat_map(move |one| (one + 1..count).map(move |other| (one, other)));
+        let twos = pairs.flat_map(|(one, other)| [true, false].map(|along_x| Self::Two(one, other, along_x)));
+        (0..count).map(Self::One).chain(twos)
+    }
+}
+
+/// What weights prove.
+enum Proof<T> {
+    /// Certainly nothing.
+    Nothing,
+    /// That nothing fulfils the conditions.
+    Empty,
+    /// At least p / q, both not negative.
+    AtLeast(T, T),
+    /// These numbers do not tell which.
+    Uncertain,
+}
+
+fn proof<'c, T: Bounded + 'c>(weights: Weights, condition: impl Fn(usize) -> &'c Linear<T>) -> Proof<T> {
+    // Conditions that hold at 0 both prove nothing.
+    let is_not_negative = |linear: &Linear<T>| linear.c.sign().is_some_and(Ordering::is_ge);
+    let sum = match weights {
+        Weights::One(one) => condition(one).clone(),
+        Weights::Two(one, other, along_x) => {
+            let (one, other) = (condition(one), condition(other));
+            if is_not_negative(one) && is_not_negative(other) {
+                return Proof::Nothing;
+            }
+            let slope = |linear: &'c Linear<T>| if along_x { &linear.x } else { &linear.y };
+            let (of_one, of_other) = (slope(one), slope(other));
+            match (of_one.sign(), of_other.sign()) {
+                (Some(Ordering::Less), Some(Ordering::Greater))
+                | (Some(Ordering::Greater), Some(Ordering::Less)) => {}
+                (Some(_), Some(_)) => return Proof::Nothing,
+                _ => return Proof::Uncertain,
+            }
+            let sum = one.scaled(&of_other.abs()).add(&other.scaled(&of_one.abs()));
+            // One of the slopes vanishes by the choice of the weights.
+            if along_x { Linear { x: T::of(0.0), ..sum } } else { Linear { y: T::of(0.0), ..sum } }
         }
-        let [low, high] = T::quotient_between(&T::of(0.0).sub(c), &slope);
-        bounds = [bounds[0].max(low), bounds[1].max(high)];
-        true
     };
-    for condition in conditions.iter().filter(|condition| is_negative(&condition.c)) {
-        if !prove(&condition.c, &condition.x, &condition.y) {
+    match sum.c.sign() {
+        Some(Ordering::Less) => {
+            let slope = sum.x.abs().add(&sum.y.abs());
+            match slope.sign() {
+                Some(Ordering::Equal) => Proof::Empty,
+                _ => Proof::AtLeast(T::of(0.0).sub(&sum.c), slope),
+            }
+        }
+        Some(_) => Proof::Nothing,
+        None => Proof::Uncertain,
+    }
+}
+
+/// Bounds of the least size, in D times the mesh's unit, of a displacement at which all conditions hold; `None` if none
+/// exists, or if the size `is_enough` to be of no interest. `exact` forms a condition without rounding.
+///
+/// In intervals first: only weights that may prove the most are looked at exactly.
+pub(super) fn least_size(
+    conditions: &[LazyLinear],
+    exact: impl Fn(usize) -> Linear<Dyadic>,
+    is_enough: impl Fn(f64) -> bool,
+) -> Option<[f64; 2]> {
+    let mut least = 0.0_f64;
+    // The weights that may prove something, and at most how much.
+    let mut candidates: Vec<(Weights, f64)> = Vec::new();
+    for weights in Weights::all(conditions.len()) {
+        match proof(weights, |index| &conditions[index].fast) {
+            Proof::Nothing => {}
+            Proof::Empty => return None,
+            Proof::AtLeast(p, q) => {
+                let [low, high] = Interval::quotient_between(&p, &q);
+                least = least.max(low);
+                candidates.push((weights, high));
+            }
+            Proof::Uncertain => candidates.push((weights, f64::INFINITY)),
+        }
+        if is_enough(least) {
             return None;
         }
     }
-    for (k, one) in conditions.iter().enumerate() {
-        for other in &conditions[k + 1..] {
-            if !is_negative(&one.c) && !is_negative(&other.c) {
-                continue;
-            }
-            for along_x in [true, false] {
-                let slope = |linear: &Linear<T>| if along_x { linear.x.clone() } else { linear.y.clone() };
-                let (of_one, of_other) = (slope(one), slope(other));
-                let are_opposite = matches!(
-                    (of_one.sign(), of_other.sign()),
-                    (Some(Ordering::Less), Some(Ordering::Greater))
-                        | (Some(Ordering::Greater), Some(Ordering::Less))
-                );
-                if !are_opposite {
-                    continue;
-                }
-                let sum = one.scaled(&of_other.abs()).add(&other.scaled(&of_one.abs()));
-                // One of the slopes vanishes by the choice of the weights.
-                let (x, y) = if along_x { (T::of(0.0), sum.y) } else { (sum.x, T::of(0.0)) };
-                if is_negative(&sum.c) && !prove(&sum.c, &x, &y) {
-                    return None;
-                }
+    let mut uncertain = Vec::new();
+    for triple in triples(conditions.len()) {
+        match excludes(triple.map(|index| &conditions[index].fast)) {
+            Some(true) => return None,
+            Some(false) => {}
+            None => uncertain.push(triple),
+        }
+    }
+    let exact = |index: usize| conditions[index].exact(|| exact(index));
+    let mut bounds = [0.0_f64; 2];
+    for (weights, _) in candidates.iter().filter(|(_, high)| *high >= least) {
+        match proof(*weights, exact) {
+            Proof::Nothing | Proof::Uncertain => {}
+            Proof::Empty => return None,
+            Proof::AtLeast(p, q) => {
+                let [low, high] = Dyadic::quotient_between(&p, &q);
+                bounds = [bounds[0].max(low), bounds[1].max(high)];
             }
         }
     }
-    (!is_empty(conditions)).then_some(bounds)
+    let is_possible =
+        !is_enough(bounds[0]) && !uncertain.iter().any(|triple| excludes(triple.map(exact)) == Some(true));
+    is_possible.then_some(bounds)
 }
 
-/// Whether three of the conditions certainly exclude one another.
-fn is_empty<T: Bounded>(conditions: &[Linear<T>]) -> bool {
-    let cross = |a: &Linear<T>, b: &Linear<T>| a.x.mul(&b.y).sub(&a.y.mul(&b.x));
-    let count = conditions.len();
-    for i in 0..count {
-        for j in i + 1..count {
-            let of_k = cross(&conditions[i], &conditions[j]);
-            let Some(turn @ (Ordering::Less | Ordering::Greater)) = of_k.sign() else { continue };
-            for k in j + 1..count {
-                let [a, b, c] = [i, j, k].map(|index| &conditions[index]);
-                if ![a, b, c].iter().any(|condition| is_negative(&condition.c)) {
-                    continue;
-                }
-                let (of_i, of_j) = (cross(b, c), cross(c, a));
-                // The slopes vanish in sum with these weights, which must have one sign.
-                let weights = [&of_i, &of_j, &of_k];
-                if weights.iter().any(|weight| weight.sign() != Some(turn)) {
-                    continue;
-                }
-                let sum = a.c.mul(&of_i).add(&b.c.mul(&of_j)).add(&c.c.mul(&of_k));
-                let negative = if turn == Ordering::Greater { Ordering::Less } else { Ordering::Greater };
-                if sum.sign() == Some(negative) {
-                    return true;
-                }
-            }
-        }
+/// All three of so many.
+fn triples(count: usize) -> impl Iterator<Item = [usize; 3]> {
+    (0..count).flat_map(move |i| (i + 1..count).flat_map(move |j| (j + 1..count).map(move |k| [i, j, k])))
+}
+
+/// Whether three conditions exclude one another; `None` if these numbers do not tell.
+fn excludes<T: Number>([a, b, c]: [&Linear<T>; 3]) -> Option<bool> {
+    if [a, b, c].iter().all(|condition| condition.c.sign().is_some_and(Ordering::is_ge)) {
+        return Some(false);
     }
-    false
+    let cross = |a: &Linear<T>, b: &Linear<T>| a.x.mul(&b.y).sub(&a.y.mul(&b.x));
+    // The slopes vanish in sum with these weights, which must have one sign.
+    let weights = [cross(b, c), cross(c, a), cross(a, b)];
+    let signs = weights.each_ref().map(Number::sign);
+    let has = |sign: Ordering| signs.contains(&Some(sign));
+    if has(Ordering::Equal) || (has(Ordering::Less) && has(Ordering::Greater)) {
+        return Some(false);
+    }
+    let [Some(turn), Some(_), Some(_)] = signs else { return None };
+    let [of_a, of_b, of_c] = weights;
+    let sum = a.c.mul(&of_a).add(&b.c.mul(&of_b)).add(&c.c.mul(&of_c));
+    Some(sum.sign()? == turn.reverse())
 }

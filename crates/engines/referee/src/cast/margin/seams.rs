@@ -11,7 +11,7 @@
 use std::collections::HashMap;
 
 use glam::DVec3;
-use raypencil_scene::{FaceId, Triangles};
+use raypencil_scene::{FaceId, Side, Triangles};
 
 use super::super::triangle::Triangle;
 use crate::bvh::Bvh;
@@ -22,10 +22,18 @@ const OPEN: u32 = u32::MAX;
 /// The edges of a mesh, and the cones of its boxes.
 #[derive(Debug)]
 pub(in crate::cast) struct Seams {
-    /// For each face the faces behind its edges from corner 0, 1 and 2.
-    mates: Vec<[u32; 3]>,
+    faces: Vec<FaceSeams>,
     /// For each node of the hierarchy.
     cones: Vec<Cone>,
+}
+
+/// A face among the others.
+#[derive(Debug, Clone, Copy)]
+struct FaceSeams {
+    /// The faces behind its edges from corner 0, 1 and 2.
+    mates: [u32; 3],
+    /// The unit normal, to [`NORMAL_SLACK`] and the rounding to `f32`; NaN where f64 does not give it.
+    normal: [f32; 3],
 }
 
 /// The normals of some faces are within an angle of an axis.
@@ -38,6 +46,9 @@ struct Cone {
 
 /// Greatest angle, in radians, by which a normal in f64 may be wrong, and the slack of cones.
 const NORMAL_SLACK: f64 = 1.0 / (1u64 << 24) as f64;
+
+/// More than a normal's [`NORMAL_SLACK`], its rounding to f32, which is at most 2^-24 of its length, and roundings of f64.
+const SIDE_SLACK: f64 = 4.0 * NORMAL_SLACK;
 
 /// Least area of a face, as a part of the product of two of its edges, whose f64 normal is that good: its error is
 /// below 8 * 2^-53 of this product.
@@ -67,13 +78,32 @@ impl Seams {
             Cone { axis, sine }
         };
         let cones = (0..bvh.node_count() as u32).map(cone).collect();
-        Self { mates, cones }
+        let faces = mates.into_iter().zip(&normals).map(|(mates, normal)| {
+            let normal = normal.map_or([f32::NAN; 3], |normal| normal.to_array().map(|part| part as f32));
+            FaceSeams { mates, normal }
+        });
+        Self { faces: faces.collect(), cones }
     }
 
     /// The only other face at the edge from corner k of a face, if there is just one and it runs the other way.
     pub(super) fn mate(&self, face: FaceId, k: usize) -> Option<FaceId> {
-        let mate = self.mates[face.0 as usize][k];
+        let mate = self.faces[face.0 as usize].mates[k];
         (mate != OPEN).then_some(FaceId(mate))
+    }
+
+    /// The side that a face shows to a direction; `None` if the normal does not tell it.
+    #[inline]
+    pub(super) fn certain_side(&self, face: FaceId, unit_direction: DVec3) -> Option<Side> {
+        let normal = self.faces[face.0 as usize].normal.map(f64::from);
+        let along = DVec3::from_array(normal).dot(unit_direction);
+        // NaN is neither.
+        if along < -SIDE_SLACK {
+            Some(Side::Front)
+        } else if along > SIDE_SLACK {
+            Some(Side::Back)
+        } else {
+            None
+        }
     }
 
     /// Whether all faces of a node, and those behind their edges, certainly show the same side to a direction: -1

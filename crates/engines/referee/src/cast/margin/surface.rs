@@ -30,14 +30,15 @@ use std::rc::Rc;
 use glam::DVec3;
 use raypencil_scene::{FaceId, Side, Sides};
 
-use super::super::query_ray::QueryRay;
 use super::super::triangle::Triangle;
 use super::faces::in_units;
 use super::flat::{FlatFace, corner_of};
 use super::frame::{Frame, FrameNumbers, least_size};
 use super::hidden::{Hidden, WalkedFace};
 use super::nearby::Nearby;
+use super::screen::Screen;
 use super::segment::{Border, Cover, Piece, Place, Segment, corner_segment, cover, covered_up_to, met_at};
+use super::view::View;
 use super::{ExactCast, within};
 use crate::bvh::RayBundle;
 use crate::margin::Margin;
@@ -45,8 +46,10 @@ use crate::number::{Dyadic, Number};
 
 /// What waits to be looked at, nearest first.
 enum Task {
-    /// A border, not yet cut into pieces.
+    /// A border, not yet cut into pieces, by the least displacement to its box.
     Border(FaceId, Side, Border),
+    /// The same by the least displacement to the segment itself, with the places of its two pieces in the order of tasks.
+    Segment(FaceId, Side, Border, usize),
     /// A corner of the flat face: all that an end of the ray leaves of it.
     Corner(FaceId, Side, usize),
     Piece(Box<Piece>),
@@ -61,8 +64,21 @@ struct Tasks {
 
 impl Tasks {
     fn push(&mut self, size: f64, task: Task) {
-        self.order.push(Reverse((size.to_bits(), self.tasks.len())));
-        self.tasks.push(Some(task));
+        let place = self.reserve(1);
+        self.push_at(place, size, task);
+    }
+
+    /// So many places in the order of tasks; gives the first.
+    fn reserve(&mut self, count: usize) -> usize {
+        let first = self.tasks.len();
+        self.tasks.extend(std::iter::repeat_with(|| None).take(count));
+        first
+    }
+
+    /// Puts a task on a place that is reserved.
+    fn push_at(&mut self, place: usize, size: f64, task: Task) {
+        self.order.push(Reverse((size.to_bits(), place)));
+        self.tasks[place] = Some(task);
     }
 
     fn size(&self) -> f64 {
@@ -80,11 +96,16 @@ const PLACE_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
 impl ExactCast<'_> {
     /// The margin of the surface of a ray that hits. No jump is nearer than `from`, the margin of the faces.
-    pub(super) fn surface_margin(&self, frame: &Frame<'_>, from: f64, sides: Sides) -> Margin {
+    ///
+    /// The screen only finds sooner what is hidden: without one the margin is the same.
+    pub(super) fn surface_margin(
+        &self,
+        frame: &Frame<'_>,
+        from: f64,
+        view: &View<'_>,
+        screen: Option<&Screen<'_>>,
+    ) -> Margin {
         let cap = self.tree.diagonal;
-        let query = QueryRay::new(frame.ray);
-        let seams = self.seams();
-        let direction = super::super::bundle(frame.ray).direction;
         let [first, last] = frame.ranges();
         let mut nearby = Nearby::new(&self.tree.bvh);
         let mut tasks = Tasks::default();
@@ -100,41 +121,54 @@ impl ExactCast<'_> {
                         return false;
                     }
                     let is_cut = near <= first || far >= last;
-                    let shown = seams.side_shown(node, direction);
+                    let shown = view.side_shown(node);
                     // Where all show one side there is no border; where all show backs that are not hit, nothing.
-                    shown == 0 || (is_cut && (shown < 0 || sides == Sides::Both))
+                    shown == 0 || (is_cut && (shown < 0 || view.sides() == Sides::Both))
                 });
                 for face in faces {
-                    self.add_borders(frame, face, sides, &query, &mut tasks);
+                    self.add_borders(frame, face, view, &mut tasks);
                 }
                 continue;
             }
             match tasks.pop() {
                 None => {}
                 Some(Task::Border(face, side, border)) => {
+                    let place = tasks.reserve(2);
+                    let least = match (screen, border) {
+                        (Some(screen), Border::Edge(k)) => self.least_size_of_edge(screen, (face, side, k)),
+                        _ => size,
+                    };
+                    tasks.push_at(place, least.max(size), Task::Segment(face, side, border, place));
+                }
+                Some(Task::Segment(face, side, border, place)) => {
+                    if let (Some(screen), Border::Edge(k)) = (screen, border)
+                        && self.is_edge_hidden(screen, (face, side, k), view.sides())
+                    {
+                        continue;
+                    }
                     let segment = Segment::of(&self.mesh.corners(face), side, border, frame.exact());
                     let segment = Rc::new(segment);
                     let pieces = segment.pieces(frame.exact()).into_iter().flatten();
-                    for [near, far] in pieces {
+                    for (k, [near, far]) in pieces.enumerate() {
                         let piece = Piece { face, side, border, segment: Rc::clone(&segment), near, far };
                         if !piece.is_empty() {
                             let size = in_units(segment.size(&piece.near), frame)[0].max(from);
-                            tasks.push(size, Task::Piece(Box::new(piece)));
+                            tasks.push_at(place + k, size, Task::Piece(Box::new(piece)));
                         }
                     }
                 }
                 Some(Task::Corner(face, side, k)) => {
                     let point = corner_segment(&self.flat(frame.exact(), face, side), k);
-                    if self.stands_alone(frame, &point, sides, &query) {
+                    if self.stands_alone(frame, &point, view) {
                         let near = Place::start();
                         let far = Place::end();
                         let (border, segment) = (Border::Edge(k), Rc::new(point));
                         let piece = Piece { face, side, border, segment, near, far };
-                        return self.jump(frame, &piece, sides, cap);
+                        return self.jump(frame, &piece, view.sides(), cap);
                     }
                 }
-                Some(Task::Piece(mut piece)) => match self.next_uncovered(frame, &piece, sides, &query) {
-                    None => return self.jump(frame, &piece, sides, cap),
+                Some(Task::Piece(mut piece)) => match self.next_uncovered(frame, &piece, view) {
+                    None => return self.jump(frame, &piece, view.sides(), cap),
                     Some(near) => {
                         piece.near = near;
                         if !piece.is_empty() {
@@ -152,15 +186,8 @@ impl ExactCast<'_> {
     }
 
     /// Adds the borders of a face at which the surface may end.
-    fn add_borders(
-        &self,
-        frame: &Frame<'_>,
-        face: &Triangle,
-        sides: Sides,
-        query: &QueryRay<'_>,
-        tasks: &mut Tasks,
-    ) {
-        let Some(side) = face.seen_side(query).filter(|side| sides.include(*side)) else { return };
+    fn add_borders(&self, frame: &Frame<'_>, face: &Triangle, view: &View<'_>, tasks: &mut Tasks) {
+        let Some(side) = view.side_hit(face) else { return };
         let [first, last] = frame.ranges();
         let corner = |k: usize| face.corners[corner_of(side, k)];
         let span_of = |a: DVec3, b: DVec3| frame.span(a.min(b), a.max(b));
@@ -169,7 +196,7 @@ impl ExactCast<'_> {
         let is_cut = near <= first || far >= last;
         for k in 0..3 {
             // Both faces show the same side: they continue one another, unless the edge is where an end cuts them.
-            if !is_cut && self.continued(face.id, side, k, query).is_some() {
+            if !is_cut && self.continued(face.id, side, k, view).is_some() {
                 continue;
             }
             let span = span_of(corner(k), corner(k + 1));
@@ -197,24 +224,18 @@ impl ExactCast<'_> {
     }
 
     /// The one other face that has the edge from corner k of a flat face, if it shows the ray the same side.
-    fn continued(&self, face: FaceId, side: Side, k: usize, query: &QueryRay<'_>) -> Option<FaceId> {
+    fn continued(&self, face: FaceId, side: Side, k: usize, view: &View<'_>) -> Option<FaceId> {
         // Corner k of the flat face and the next are an edge of the mesh's face; from the second if it is turned round.
         let edge = match side {
             Side::Back => k,
             Side::Front => corner_of(side, k + 1),
         };
         let mate = self.seams().mate(face, edge)?;
-        (Triangle::of(self.mesh, mate).seen_side(query) == Some(side)).then_some(mate)
+        view.shows(mate, side).then_some(mate)
     }
 
     /// Where the piece begins that no face of those at its near end covers; `None` if none covers it there.
-    fn next_uncovered(
-        &self,
-        frame: &Frame<'_>,
-        piece: &Piece,
-        sides: Sides,
-        query: &QueryRay<'_>,
-    ) -> Option<Place> {
+    fn next_uncovered(&self, frame: &Frame<'_>, piece: &Piece, view: &View<'_>) -> Option<Place> {
         let numbers = &frame.fast;
         let segment = piece.segment.as_ref();
         let fast = Segment::of(&self.mesh.corners(piece.face), piece.side, piece.border, numbers);
@@ -222,7 +243,7 @@ impl ExactCast<'_> {
         let bundle = self.bundle_at(frame, place);
         let at = [place[0], place[1]].map(|part| part / numbers.scale.middle());
         let behind = |face, side, k| {
-            let mate = self.continued(face, side, k, query)?;
+            let mate = self.continued(face, side, k, view)?;
             Some(WalkedFace { face: mate, flat: self.flat(numbers, mate, side) })
         };
         let walk = |face, side, flat| {
@@ -238,9 +259,7 @@ impl ExactCast<'_> {
             if is_hidden || !frame.may_show(&face.corners, at, bundle.start_radius) {
                 return bundle.max_range;
             }
-            let Some(side) = face.seen_side(query).filter(|side| sides.include(*side)) else {
-                return bundle.max_range;
-            };
+            let Some(side) = view.side_hit(face) else { return bundle.max_range };
             let flat = FlatFace::new(numbers, &face.corners, side);
             match cover(piece, &fast, &flat, numbers) {
                 Some(Cover::None) => {}
@@ -286,18 +305,12 @@ impl ExactCast<'_> {
     }
 
     /// Whether a corner, which is all that is left of its face, is a jump.
-    fn stands_alone(
-        &self,
-        frame: &Frame<'_>,
-        point: &Segment<Dyadic>,
-        sides: Sides,
-        query: &QueryRay<'_>,
-    ) -> bool {
+    fn stands_alone(&self, frame: &Frame<'_>, point: &Segment<Dyadic>, view: &View<'_>) -> bool {
         let numbers = frame.exact();
         let bundle = self.bundle_at(frame, point.point(&Place::start()));
         let mut stands_alone = true;
         self.tree.bvh.visit(&bundle, |face| {
-            if let Some(side) = face.seen_side(query).filter(|side| sides.include(*side)) {
+            if let Some(side) = view.side_hit(face) {
                 let flat = self.flat(numbers, face.id, side);
                 stands_alone &= match met_at(point, &flat, numbers) {
                     None | Some(Ordering::Greater) => true,

@@ -1,0 +1,244 @@
+//! The fast ways to a margin against the slow ones: the same bits on meshes that are hard for them, and counts that prove that the
+//! fast ways are taken.
+
+use glam::DVec3;
+use raypencil_scene::{FaceId, Side, Triangles};
+
+use super::super::query_ray::QueryRay;
+use super::super::triangle::Triangle;
+use super::flat::{Linear, corner_of};
+use super::region::{LazyLinear, least_size};
+use super::*;
+use crate::number::{Dyadic, Interval, Number};
+use crate::splitmix::SplitMix64;
+
+type Corners = Vec<[DVec3; 3]>;
+
+fn point(random: &mut SplitMix64) -> DVec3 {
+    DVec3::new(random.part(), random.part(), random.part())
+}
+
+/// A square from -1 to 1 of 2 n n faces, each vertex where `at` moves it.
+fn sheet(n: usize, mut at: impl FnMut(DVec3) -> DVec3) -> Corners {
+    let part = |k: usize| 2.0 * k as f64 / n as f64 - 1.0;
+    let vertices: Vec<DVec3> =
+        (0..=n * (n + 2)).map(|k| at(DVec3::new(part(k % (n + 1)), part(k / (n + 1)), 0.0))).collect();
+    let corner = |x: usize, y: usize| vertices[y * (n + 1) + x];
+    (0..n * n)
+        .flat_map(|k| {
+            let (x, y) = (k % n, k / n);
+            let [a, b, c, d] = [corner(x, y), corner(x + 1, y), corner(x + 1, y + 1), corner(x, y + 1)];
+            [[a, b, c], [a, c, d]]
+        })
+        .collect()
+}
+
+/// Hills that hide one another from the side.
+fn hills(random: &mut SplitMix64) -> Corners {
+    sheet(14, |at| at + 0.25 * DVec3::Z * random.part())
+}
+
+/// A sheet that is folded over itself, many times.
+fn folded(random: &mut SplitMix64) -> Corners {
+    sheet(14, |at| DVec3::new(at.x + 0.4 * random.part(), at.y + 0.4 * random.part(), 0.2 * random.part()))
+}
+
+/// Steps of whole eighths: edges through edges, upright faces.
+fn steps(random: &mut SplitMix64) -> Corners {
+    sheet(8, |at| DVec3::new(at.x, at.y, f64::from(random.below(3)) / 8.0))
+}
+
+/// Faces that share nothing.
+fn scattered(random: &mut SplitMix64) -> Corners {
+    (0..200)
+        .map(|_| {
+            let at = point(random);
+            [0; 3].map(|_| at + 0.3 * point(random))
+        })
+        .collect()
+}
+
+/// Hills so narrow that rounding tips them over.
+fn slender(random: &mut SplitMix64) -> Corners {
+    sheet(10, |at| DVec3::new(at.x, 1e-13 * at.y, 0.2 * random.part()))
+}
+
+fn mesh(corners: &Corners, size: f64, place: DVec3) -> Triangles {
+    let vertices = corners.iter().flatten().map(|&corner| (size * corner + place).to_array()).collect();
+    let faces = (0..corners.len() as u32).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]).collect();
+    Triangles::new(vertices, faces).unwrap()
+}
+
+/// From above or from the side, now and then with ends, and through a vertex.
+fn ray(random: &mut SplitMix64, corners: &Corners, size: f64, place: DVec3) -> CastRay {
+    let lift = [0.05, 0.3, 2.0][random.below(3) as usize];
+    let from = DVec3::new(1.5 * random.part(), 1.5 * random.part(), lift);
+    let to = match random.below(4) {
+        0 => corners[random.below(corners.len() as u32) as usize][0],
+        1 => DVec3::new(from.x, from.y, -1.0),
+        _ => DVec3::new(random.part(), random.part(), 0.1 * random.part()),
+    };
+    let ray = CastRay::new(size * from + place, size * (to - from));
+    match random.below(6) {
+        0 => CastRay { t_max: 0.5 + random.unit(), ..ray },
+        1 => CastRay { t_min: random.unit(), ..ray },
+        _ => ray,
+    }
+}
+
+/// What draws a mesh.
+type Family = fn(&mut SplitMix64) -> Corners;
+
+const FAMILIES: [(&str, Family); 5] =
+    [("hills", hills), ("folded", folded), ("steps", steps), ("scattered", scattered), ("slender", slender)];
+
+/// A size of the mesh, and where it is.
+const FRAMES: [(f64, DVec3); 4] =
+    [(1.0, DVec3::ZERO), (1.0, DVec3::new(1e7, -3e6, 1e5)), (1e20, DVec3::ZERO), (1e-150, DVec3::ZERO)];
+
+fn bits(margin: &Margin) -> [u64; 4] {
+    let by = margin.witness.as_ref().map_or([f64::NAN; 2], |by| by.to_array());
+    [margin.lo, margin.hi, by[0], by[1]].map(f64::to_bits)
+}
+
+#[test]
+fn what_the_screen_leaves_out_changes_no_margin() {
+    let mut random = SplitMix64(45);
+    for (name, family) in FAMILIES {
+        let mut compared = 0;
+        for (size, place) in FRAMES {
+            let corners = family(&mut random);
+            let mesh = mesh(&corners, size, place);
+            let cast = ExactCast::new(&mesh);
+            for _ in 0..150 {
+                let ray = ray(&mut random, &corners, size, place);
+                let sides = if random.below(3) == 0 { Sides::Fronts } else { Sides::Both };
+                if cast.nearest(&ray, sides).is_empty() {
+                    continue;
+                }
+                let frame = Frame::new(&ray);
+                let view = View::new(&mesh, cast.seams(), &ray, sides);
+                let screen = Screen::new(&frame, cast.tree.largest_coordinate);
+                let [with, without] =
+                    [screen.as_ref(), None].map(|screen| cast.surface_margin(&frame, 0.0, &view, screen));
+                assert_eq!(bits(&with), bits(&without), "{name}: {ray:?}: {with:?} and {without:?}");
+                compared += 1;
+            }
+        }
+        assert!(compared > 100, "{name}: {compared} rays hit something");
+    }
+}
+
+/// Every edge that is called hidden is met behind a face in each of many places, exactly; and of those of hills, which are behind
+/// one surface, a third is called so.
+#[test]
+fn edges_that_the_screen_hides_are_hidden() {
+    let mut random = SplitMix64(46);
+    let (mut called, mut hidden) = (0, 0);
+    for (name, family) in FAMILIES {
+        for (size, place) in FRAMES {
+            let corners = family(&mut random);
+            let mesh = mesh(&corners, size, place);
+            let cast = ExactCast::new(&mesh);
+            let ray = ray(&mut random, &corners, size, place);
+            let frame = Frame::new(&ray);
+            let view = View::new(&mesh, cast.seams(), &ray, Sides::Both);
+            let Some(screen) = Screen::new(&frame, cast.tree.largest_coordinate) else {
+                assert!(size < 1e-100, "{name}");
+                continue;
+            };
+            for (face, k) in (0..corners.len() as u32).flat_map(|face| [0, 1, 2].map(|k| (FaceId(face), k))) {
+                let Some(side) = view.side(&Triangle::of(&mesh, face)) else { continue };
+                let is_called = cast.is_edge_hidden(&screen, (face, side, k), Sides::Both);
+                let own = mesh.corners(face);
+                let [p, q] = [k, k + 1].map(|k| own[corner_of(side, k)]);
+                // A place of the edge to the last digit is not needed: what hides is far before it.
+                let is_hidden_at = |part: f64| {
+                    let place = p + (q - p) * part;
+                    let t = (place - ray.origin).dot(ray.direction) / ray.direction.length_squared();
+                    let t_max = t - 1e-12 * (t.abs() + place.length() / ray.direction.length());
+                    let through = CastRay { origin: place - ray.direction * t, t_max, ..ray };
+                    t_max > ray.t_min && cast.any(&through, Sides::Both)
+                };
+                let is_hidden = [0.01, 0.3, 0.5, 0.77, 0.99].into_iter().all(is_hidden_at);
+                assert!(
+                    is_hidden || !is_called,
+                    "{name} of {size}: edge {k} of {face:?}, {p} to {q}, {ray:?}"
+                );
+                if name == "hills" {
+                    called += usize::from(is_called);
+                    hidden += usize::from(is_hidden);
+                }
+            }
+        }
+    }
+    assert!(called > 300 && 3 * called > hidden, "{called} of {hidden} hidden edges");
+}
+
+#[test]
+fn sides_by_normals_are_the_exact_ones() {
+    let mut random = SplitMix64(47);
+    let mut certain = 0;
+    for (name, family) in FAMILIES {
+        let corners = family(&mut random);
+        let mesh = mesh(&corners, 1.0, DVec3::ZERO);
+        let cast = ExactCast::new(&mesh);
+        for index in 0..mesh.faces().len() as u32 {
+            let face = Triangle::of(&mesh, FaceId(index));
+            let [a, b, c] = face.corners;
+            // Along the face, but for some part of its normal.
+            let normal = (b - a).cross(c - a).normalize_or(DVec3::Z);
+            for part in [0.0, 1e-17, 1e-9, 1e-7, 3e-7, 1e-6, 0.1] {
+                for sign in [1.0, -1.0] {
+                    let ray = CastRay::new(a, (b - a).normalize() + sign * part * normal);
+                    let view = View::new(&mesh, cast.seams(), &ray, Sides::Both);
+                    let exactly = face.seen_side(&QueryRay::new(&ray));
+                    assert_eq!(view.side(&face), exactly, "{name}: {face:?} by {ray:?}");
+                    for side in [Side::Front, Side::Back] {
+                        assert_eq!(view.shows(face.id, side), exactly == Some(side), "{name}");
+                    }
+                    certain +=
+                        usize::from(cast.seams().certain_side(face.id, ray.direction.normalize()).is_some());
+                }
+            }
+        }
+    }
+    assert!(certain > 1000, "{certain}");
+}
+
+/// The least size by intervals first is that of exact arithmetic alone, whatever intervals leave open.
+#[test]
+fn the_least_size_is_that_of_all_weights_looked_at_exactly() {
+    let mut random = SplitMix64(48);
+    let (mut sizes, mut empty) = (0, 0);
+    for round in 0..4000 {
+        let mut number = || match round % 3 {
+            0 => f64::from(random.below(5)) - 2.0,
+            1 => random.part(),
+            _ => (f64::from(random.below(5)) - 2.0) * (1.0 + f64::EPSILON * f64::from(random.below(3))),
+        };
+        let given: Vec<[f64; 3]> = (0..4 + round % 3).map(|_| [number(), number(), number()]).collect();
+        // A product makes intervals as wide as they are in a mesh.
+        let third = 1.0 / 3.0;
+        let linear = |[c, x, y]: [f64; 3]| {
+            fn of<T: Number>(value: f64, third: f64) -> T {
+                T::of(value).mul(&T::of(third))
+            }
+            let exact = Linear::<Dyadic> { c: of(c, third), x: of(x, third), y: of(y, third) };
+            (Linear::<Interval> { c: of(c, third), x: of(x, third), y: of(y, third) }, exact)
+        };
+        let (fast, exact): (Vec<_>, Vec<_>) = given.iter().map(|&given| linear(given)).unzip();
+        let anything = Interval::between(f64::NEG_INFINITY, f64::INFINITY);
+        let nothing_known = vec![Linear { c: anything, x: anything, y: anything }; given.len()];
+        let [quickly, slowly] = [fast, nothing_known].map(|fast| {
+            let conditions: Vec<LazyLinear> = fast.into_iter().map(LazyLinear::new).collect();
+            least_size(&conditions, |index| exact[index].clone(), |_| false)
+        });
+        assert_eq!(quickly, slowly, "{given:?}");
+        match quickly {
+            Some(size) => sizes += usize::from(size[0] > 0.0),
+            None => empty += 1,
+        }
+    }
+    assert!(sizes > 500 && empty > 500, "{sizes} sizes, {empty} without any");
+}
