@@ -25,6 +25,9 @@ const FEW_RAYS: usize = 64;
 /// `hits`, `too_near` and `backs`.
 type Counts = (u64, u64, u64);
 
+/// Of how many rays plain f64, intervals and exact arithmetic decided the first hit.
+type Decided = (u64, u64, u64);
+
 /// What is asked.
 #[derive(Debug, Clone, Copy)]
 struct Asked {
@@ -42,8 +45,8 @@ struct Answered {
     counts: ReadingCounts,
 }
 
-/// Answers rays of (n, 9) on a mesh: arrays by the names of `docs/guide/cast.md`, of this shape, how many rays read what, and what
-/// looks wrong. The bits of `values` are the names of `raypencil::cast::Values`; in messages the first ray has the index `first`.
+/// Answers rays of (n, 9) on a mesh: arrays by the names of `docs/guide/cast.md`, of this shape, how many rays read what,
+/// what decided it if the referee was asked for first hits, and what looks wrong. The bits of `values` are the names of `raypencil::cast::Values`; in messages the first ray has the index `first`.
 #[pyfunction]
 #[pyo3(signature = (
     mesh, rays, shape, first, values, by_tracer, fronts_only, any, all, margins, threads, warn, on_stage=None
@@ -63,7 +66,7 @@ pub(crate) fn cast<'py>(
     threads: usize,
     warn: bool,
     on_stage: Option<&Bound<'py, PyAny>>,
-) -> PyResult<(Bound<'py, PyDict>, Counts, Vec<String>)> {
+) -> PyResult<(Bound<'py, PyDict>, Counts, Option<Decided>, Vec<String>)> {
     let failed = |failure: Failure| failure.into_exception(py);
     let set = rays_from(&rays, first).map_err(failed)?;
     drop(rays);
@@ -93,9 +96,11 @@ pub(crate) fn cast<'py>(
             })
         })?
     };
-    let ReadingCounts { hits, too_near, backs } = answered.counts;
+    let ReadingCounts { hits, too_near, backs, decided } = answered.counts;
+    let is_exact = !by_tracer && asked.values != Values::default();
+    let decided = is_exact.then_some((decided.filter, decided.intervals, decided.exact));
     let arrays = arrays_of(answered, &rays, &shape, by_tracer);
-    Ok((arrays.into_dict(py)?, (hits, too_near, backs), warnings))
+    Ok((arrays.into_dict(py)?, (hits, too_near, backs), decided, warnings))
 }
 
 /// Says nothing, unless one of the rays of (n, 9) is none. The first one has the index `first`.
@@ -123,7 +128,8 @@ pub(crate) fn cast_warnings(
         sides: sides(fronts_only),
     };
     let mesh = mesh.get().clone();
-    watched(py, None, move |_| Ok(warnings(&mesh, &set, asked, ReadingCounts { hits, too_near, backs })))
+    let counts = ReadingCounts { hits, too_near, backs, ..ReadingCounts::default() };
+    watched(py, None, move |_| Ok(warnings(&mesh, &set, asked, counts)))
 }
 
 /// Says how far it is, and hears Ctrl-C.
@@ -153,6 +159,7 @@ fn answer(
         any: questions.any.then(Vec::new),
         all: questions.all.then(Vec::new),
         margins: questions.margins.then(Vec::new),
+        decided: None,
     };
     for (index, part) in rays.chunks(RAYS_AT_A_TIME).enumerate() {
         let at = index * RAYS_AT_A_TIME;
@@ -178,9 +185,7 @@ fn answer(
             extend(&mut beside.all, further.all);
             extend(&mut beside.margins, further.margins);
         }
-        counts.hits += more.hits;
-        counts.too_near += more.too_near;
-        counts.backs += more.backs;
+        counts = counts.and(more);
     }
     Answered { columns, beside, counts }
 }

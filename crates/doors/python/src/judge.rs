@@ -63,6 +63,7 @@ fn compared(
             face: some(&stated.face, from, to),
             t: some(&stated.t, from, to),
             range: some(&stated.range, from, to),
+            hit: some(&stated.hit, from, to),
             side: some(&stated.side, from, to),
             point: some(&stated.point, from, to),
             normal: some(&stated.normal, from, to),
@@ -102,10 +103,10 @@ fn compared(
 }
 
 /// Compares first hits with the exact ones. `face` is -1 where nothing is hit; `t` and `range` are +Inf there, and -Inf where what
-/// is hit is too near.
+/// is hit is too near. `hit` counts where none of these is given.
 #[pyfunction]
 #[pyo3(signature = (
-    mesh, rays, name, arithmetic, fronts_only, face=None, t=None, range=None, side=None, point=None, normal=None,
+    mesh, rays, name, arithmetic, fronts_only, face=None, t=None, range=None, hit=None, side=None, point=None, normal=None,
     barycentric=None, cos_incidence=None, on_stage=None
 ))]
 pub(crate) fn judge<'py>(
@@ -118,6 +119,7 @@ pub(crate) fn judge<'py>(
     face: Option<PyReadonlyArray1<'py, i64>>,
     t: Option<PyReadonlyArray1<'py, f64>>,
     range: Option<PyReadonlyArray1<'py, f64>>,
+    hit: Option<PyReadonlyArray1<'py, bool>>,
     side: Option<PyReadonlyArray1<'py, f64>>,
     point: Option<PyReadonlyArray2<'py, f64>>,
     normal: Option<PyReadonlyArray2<'py, f64>>,
@@ -151,6 +153,7 @@ pub(crate) fn judge<'py>(
             .map(|array| array.as_array().iter().map(|&face| u32::try_from(face).ok().map(FaceId)).collect()),
         t: numbers(t),
         range: numbers(range),
+        hit: hit.map(|array| array.as_array().to_vec()),
         side: numbers(side).map(|numbers| numbers.into_iter().map(of_side).collect()),
         point: vectors(point),
         normal: vectors(normal),

@@ -147,7 +147,7 @@ pub use approximations::{Approximations, Explained, Reason};
 pub use arithmetic::Undecided;
 pub use aspect::aspect;
 pub use beam_returns::{BeamReturns, Contribution, RoundedReturn};
-pub use cast::{CastHit, CastMeeting, CastTree, ExactCast, HitGroup, SidedFace};
+pub use cast::{CastHit, CastMeeting, CastTree, DecidedBy, ExactCast, HitGroup, SidedFace};
 pub use certified::{CertifiedMap, CertifiedReturns, PixelSum};
 pub use displacement::Displacement;
 pub use flux::Flux;

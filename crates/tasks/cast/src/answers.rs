@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use raypencil_referee::{CastHit, ExactCast, Margins, SidedFace};
+use raypencil_referee::{CastHit, CastMeeting, DecidedBy, ExactCast, Margins, SidedFace};
 use raypencil_scene::{CastRay, FaceId, Progress, Reading, Side, Sides, Triangles};
 use raypencil_tracer::{CastTraverser, TracedHit, TracerCast};
 
@@ -54,6 +54,40 @@ pub struct GroupAtT {
     pub crossing: i32,
 }
 
+/// Of how many rays each arithmetic decided the first hit.
+///
+/// Signs are told in plain `f64` with a proven bound where that is certain, else in intervals of `f64`, else exactly. A ray counts
+/// where the slowest of its signs was told.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct DecidedCounts {
+    /// Rays of which every sign was certain in plain `f64`.
+    pub filter: u64,
+    /// Rays that needed intervals.
+    pub intervals: u64,
+    /// Rays that needed exact arithmetic.
+    pub exact: u64,
+}
+
+impl DecidedCounts {
+    pub(crate) fn add(&mut self, decided_by: DecidedBy) {
+        match decided_by {
+            DecidedBy::Filter => self.filter += 1,
+            DecidedBy::Intervals => self.intervals += 1,
+            DecidedBy::Exact => self.exact += 1,
+        }
+    }
+
+    /// The counts of both.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            filter: self.filter + other.filter,
+            intervals: self.intervals + other.intervals,
+            exact: self.exact + other.exact,
+        }
+    }
+}
+
 /// The answers to some rays, in their order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answers {
@@ -65,6 +99,8 @@ pub struct Answers {
     pub all: Option<Vec<Vec<GroupAtT>>>,
     /// The margins of each ray, if they were asked for.
     pub margins: Option<Vec<Margins>>,
+    /// What decided the first hits; `None` if they are not the referee's.
+    pub decided: Option<DecidedCounts>,
 }
 
 /// A side as files have it: 1 front, -1 back.
@@ -91,7 +127,7 @@ impl Answers {
             })
         };
         let first = rays.par_iter().map_init(|| tracer.traverser(), first).collect();
-        Self { first, any: None, all: None, margins: None }
+        Self { first, any: None, all: None, margins: None, decided: None }
     }
 
     /// The first hits, of the rays that have one.
@@ -153,8 +189,14 @@ pub fn cast_with(
     progress: &dyn Progress,
 ) -> Answers {
     progress.stage(&format!("casting {} rays", rays.len()));
-    let first = rays.par_iter().map(|ray| first(exact, ray, sides)).collect();
-    Answers { first, ..cast_beside_first(exact, rays, sides, questions, progress) }
+    let parts: Vec<_> = rays.par_chunks(RAYS_A_PART).map(|part| first_of(exact, part, sides)).collect();
+    let (mut first, mut decided) = (Vec::with_capacity(rays.len()), DecidedCounts::default());
+    for (of_part, counts) in parts {
+        first.extend(of_part);
+        decided = decided.and(counts);
+    }
+    let decided = Some(decided);
+    Answers { first, decided, ..cast_beside_first(exact, rays, sides, questions, progress) }
 }
 
 /// What is asked beside first hits, which stay empty, with a tree that is there already. A few rays are answered on this thread.
@@ -174,7 +216,7 @@ pub fn cast_beside_first(
         progress.stage(&format!("margins of {} rays", rays.len()));
         each(rays, |ray| exact.margins(ray, sides))
     });
-    Answers { first: Vec::new(), any, all, margins }
+    Answers { first: Vec::new(), any, all, margins, decided: None }
 }
 
 /// The same by the tracer, which knows no margins. Hits at the same `f64` t are one group; a group's `crossing` is unknown, and 0.
@@ -199,7 +241,7 @@ pub fn traced_beside_first(
         hits.chunk_by(|a, b| a.t == b.t).map(group).collect()
     };
     let all = questions.all.then(|| each(rays, groups));
-    Answers { first: Vec::new(), any, all, margins: None }
+    Answers { first: Vec::new(), any, all, margins: None, decided: None }
 }
 
 /// Rays for which it is not worth while to wake other threads.
@@ -234,21 +276,32 @@ fn any_traced(tracer: &TracerCast, rays: &[CastRay], sides: Sides) -> Vec<bool> 
     }
 }
 
-fn first(exact: &ExactCast<'_>, ray: &CastRay, sides: Sides) -> Reading<FirstHit> {
-    exact.first_meeting(ray, sides).map(|(meeting, ties)| {
-        let CastHit { face, side, t, range, point, normal, barycentric, cos_incidence } = meeting.hit();
-        FirstHit {
-            face,
-            side,
-            ties,
-            t: t.double,
-            range: range.double,
-            point: DVec3::from_array(point.map(|part| part.double)),
-            normal: DVec3::from_array(normal.map(|part| part.double)),
-            barycentric: barycentric.map(|weight| weight.double),
-            cos_incidence: cos_incidence.double,
-        }
-    })
+fn first_of(
+    exact: &ExactCast<'_>,
+    rays: &[CastRay],
+    sides: Sides,
+) -> (Vec<Reading<FirstHit>>, DecidedCounts) {
+    let (mut first, mut decided) = (Vec::with_capacity(rays.len()), DecidedCounts::default());
+    exact.first_meetings(rays, sides, |_, read, decided_by| {
+        first.push(read.map(|(meeting, ties)| first_hit(&meeting, ties)));
+        decided.add(decided_by);
+    });
+    (first, decided)
+}
+
+fn first_hit(meeting: &CastMeeting<'_>, ties: u32) -> FirstHit {
+    let CastHit { face, side, t, range, point, normal, barycentric, cos_incidence } = meeting.hit();
+    FirstHit {
+        face,
+        side,
+        ties,
+        t: t.double,
+        range: range.double,
+        point: DVec3::from_array(point.map(|part| part.double)),
+        normal: DVec3::from_array(normal.map(|part| part.double)),
+        barycentric: barycentric.map(|weight| weight.double),
+        cos_incidence: cos_incidence.double,
+    }
 }
 
 fn all(exact: &ExactCast<'_>, ray: &CastRay, sides: Sides) -> Vec<GroupAtT> {

@@ -5,7 +5,7 @@ use raypencil_referee::{CastMeeting, ExactCast};
 use raypencil_scene::{CastRay, Reading, Side, Sides};
 use raypencil_tracer::{TracedHit, TracerCast};
 
-use crate::answers::side_number;
+use crate::answers::{DecidedCounts, side_number};
 
 /// Rays that one thread answers by itself.
 const RAYS_A_PART: usize = 256;
@@ -31,14 +31,19 @@ pub struct ReadingCounts {
     pub too_near: u64,
     /// Hits of the back of a face.
     pub backs: u64,
+    /// What decided this; nothing if the tracer answered.
+    pub decided: DecidedCounts,
 }
 
 impl ReadingCounts {
-    fn and(self, other: Self) -> Self {
+    /// The counts of both.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
         Self {
             hits: self.hits + other.hits,
             too_near: self.too_near + other.too_near,
             backs: self.backs + other.backs,
+            decided: self.decided.and(other.decided),
         }
     }
 }
@@ -270,7 +275,10 @@ impl ColumnsPart<'_> {
         let mut counts = ReadingCounts::default();
         match caster {
             Caster::Referee(exact) => {
-                exact.first_meetings(rays, sides, |index, read| self.put(index, &read, &mut counts));
+                exact.first_meetings(rays, sides, |index, read, decided_by| {
+                    self.put(index, &read, &mut counts);
+                    counts.decided.add(decided_by);
+                });
             }
             Caster::Tracer(tracer) => {
                 let mut traverser = tracer.traverser();

@@ -49,7 +49,8 @@ mod warnings;
 mod write;
 
 pub use answers::{
-    Answers, FirstHit, GroupAtT, Questions, cast, cast_beside_first, cast_with, traced_beside_first,
+    Answers, DecidedCounts, FirstHit, GroupAtT, Questions, cast, cast_beside_first, cast_with,
+    traced_beside_first,
 };
 pub use bag::{BagFields, BagForm, write_scan_bag};
 pub use cloud::{CloudFrame, write_pcd, write_ply};

@@ -45,7 +45,8 @@ pub fn cast_warnings(
 ) -> Vec<Warning> {
     let hits = answers.counts().0 as u64;
     let backs = answers.hits().filter(|hit| hit.side == Side::Back).count() as u64;
-    let counts = ReadingCounts { hits, too_near: answers.too_near() as u64, backs };
+    let too_near = answers.too_near() as u64;
+    let counts = ReadingCounts { hits, too_near, backs, decided: answers.decided.unwrap_or_default() };
     let seen = CastSeen { counts, open_edges: answers.all.as_ref().map(|_| open_edges(mesh)) };
     cast_warnings_of(mesh, || ExactCast::new(mesh), rays, sides, set, seen)
 }
@@ -71,7 +72,7 @@ pub fn cast_warnings_of<'t>(
     let of = set.map_or(String::new(), |set| format!("{}: ", set.name));
     let warning = |code, sentence: String| Warning::of_scene(code, format!("{of}{sentence}"));
     let mut found = Vec::new();
-    let ReadingCounts { hits, too_near, backs } = seen.counts;
+    let ReadingCounts { hits, too_near, backs, .. } = seen.counts;
     if hits + too_near == 0 && !rays.is_empty() {
         found.push(warning(WarningCode::NoHits, nothing_hit(mesh, &exact(), rays, sides)));
     }

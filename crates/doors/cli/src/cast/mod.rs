@@ -6,8 +6,9 @@ mod ray_command;
 use std::path::{Path, PathBuf};
 
 use raypencil::cast::{
-    Answers, BagForm, CastPage, CastSource, Questions, RayArray, cast as answer, cast_warnings, counts_text,
-    ray_json, ray_text, rays_from_bytes, write_answers, write_cast_page, write_scan_bag, write_set,
+    Answers, BagForm, CastPage, CastSource, DecidedCounts, Questions, RayArray, cast as answer,
+    cast_warnings, counts_text, ray_json, ray_text, rays_from_bytes, write_answers, write_cast_page,
+    write_scan_bag, write_set,
 };
 use raypencil::io::{
     FileError, FileFacts, FileFrame, FileUnits, Limits, LoadedRaySets, OutputFolder, PolygonFacts, RayScene,
@@ -233,6 +234,9 @@ impl Answered<'_> {
         let summary = self.summary.as_ref().map(|path| path.display().to_string());
         let mut document =
             json!({ "counts": counts, "rays": each, "warnings": self.warnings, "summary": summary });
+        if let Some(DecidedCounts { filter, intervals, exact }) = self.answers.decided {
+            document["decided"] = json!({ "filter": filter, "intervals": intervals, "exact": exact });
+        }
         if let Some(name) = self.set {
             document["name"] = json!(name);
         }

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _arrays, _raypencil
-from ._cast_result import VALUES, CastResult
+from ._cast_result import VALUES, CastResult, decided_counts
 from ._errors import RaypencilError, RaypencilWarning
 from ._mesh import Caster, as_mesh, is_tracer, number_of_threads
 from ._progress import Progress, stages
@@ -220,11 +220,11 @@ class Asked:
         on_stage: Any = None,
     ) -> CastResult:
         """The answers to rays (n, 9) of this shape; in messages the first one has the index ``first``."""
-        arrays, _, warnings = _raypencil.cast(
+        arrays, _, decided, warnings = _raypencil.cast(
             core, rays, shape, first, self.values, self.by_tracer, self.fronts_only, self.any, self.all, self.margins,
             self.threads, True, on_stage,
         )  # fmt: skip
-        return CastResult._of_engine(arrays, shape, warnings)
+        return CastResult._of_engine(arrays, shape, warnings, decided)
 
     def _names(self) -> list[str]:
         """The arrays with a value for each ray that are answered."""
@@ -264,18 +264,22 @@ class Asked:
     ) -> CastResult:
         """Writes the answers a block at a time: only one block of rays is put together at once."""
         count = math.prod(rays.shape)
-        counts = np.zeros(3, dtype=np.int64)
+        counts, decided = np.zeros(3, dtype=np.int64), np.zeros(3, dtype=np.int64)
         of_all: list[dict[str, NDArray[Any]]] = []
+        is_decided = False
         with stages(progress) as on_stage:
             for index, start, _ in _arrays.blocks(rays.shape, RAYS_AT_A_TIME):
                 if on_stage is not None and start:
                     on_stage(f"rays: {start} of {count}")
                 block = rays.block(index)
-                flat, seen, _ = _raypencil.cast(
+                flat, seen, by, _ = _raypencil.cast(
                     core, block, (len(block),), start, self.values, self.by_tracer, self.fronts_only, self.any, self.all,
                     self.margins, self.threads, False, on_stage if start == 0 else None,
                 )  # fmt: skip
                 counts += seen
+                if by is not None:
+                    is_decided = True
+                    decided += by
                 for name, array in arrays.items():
                     part = array[index] if index else array
                     last = array.shape[len(rays.shape) :]
@@ -289,7 +293,8 @@ class Asked:
         hits, near, backs = (int(one) for one in counts)
         warnings = _raypencil.cast_warnings(core, whole, self.fronts_only, self.all, (hits, near, backs))
         results = {name: array.view() for name, array in arrays.items()}
-        return CastResult(results | _joined(of_all), rays.shape, tuple(warnings))
+        of_decided = tuple(int(one) for one in decided) if is_decided else None
+        return CastResult(results | _joined(of_all), rays.shape, tuple(warnings), decided_counts(of_decided))
 
 
 def bits_of(values: Iterable[str]) -> int:

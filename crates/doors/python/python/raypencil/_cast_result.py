@@ -90,6 +90,11 @@ def rays_and_places(hits: AllHits) -> tuple[NDArray[np.int64], NDArray[np.bool_]
     return index_ray, begins
 
 
+def decided_counts(decided: tuple[int, ...] | None) -> dict[str, int] | None:
+    """The counts of the engine by their names."""
+    return None if decided is None else dict(zip(("filter", "intervals", "exact"), decided, strict=True))
+
+
 class CastResult:
     """Answers to rays: arrays of the rays' own shape, read-only.
 
@@ -101,10 +106,14 @@ class CastResult:
     ``result[index]`` has the answers of some rays: the index is one of NumPy for an array of the rays' shape.
     """
 
-    __slots__ = ("arrays", "shape", "warnings")
+    __slots__ = ("arrays", "decided", "shape", "warnings")
 
     def __init__(
-        self, arrays: dict[str, NDArray[Any]], shape: _arrays.Shape, warnings: tuple[str, ...] = ()
+        self,
+        arrays: dict[str, NDArray[Any]],
+        shape: _arrays.Shape,
+        warnings: tuple[str, ...] = (),
+        decided: dict[str, int] | None = None,
     ) -> None:
         #: The arrays by the names of the command's files.
         self.arrays = arrays
@@ -112,13 +121,23 @@ class CastResult:
         self.shape = shape
         #: What looks wrong in the rays and their mesh: no ray hits, most hits are backs, the mesh is open where crossings are asked.
         self.warnings = warnings
+        #: Of how many rays each arithmetic decided the first hit: ``filter`` (plain float64 with a proven bound), ``intervals``,
+        #: ``exact``. ``None`` if no first hit was asked for, from the tracer, and of some of the rays of a result.
+        self.decided = decided
         _arrays.frozen(arrays)
 
     @classmethod
-    def _of_engine(cls, arrays: dict[str, NDArray[Any]], shape: _arrays.Shape, warnings: list[str]) -> CastResult:
+    def _of_engine(
+        cls,
+        arrays: dict[str, NDArray[Any]],
+        shape: _arrays.Shape,
+        warnings: list[str],
+        decided: tuple[int, ...] | None,
+    ) -> CastResult:
         """The same of arrays that are read-only already."""
         result = cls.__new__(cls)
         result.arrays, result.shape, result.warnings = arrays, shape, tuple(warnings)
+        result.decided = decided_counts(decided)
         return result
 
     def _value(self, name: str) -> NDArray[Any]:
@@ -267,11 +286,11 @@ class CastResult:
         return f"<div>{counts}{warnings}{shown}<table><tr>{head}</tr>{''.join(rows)}</table></div>"
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"arrays": self.arrays, "shape": self.shape, "warnings": self.warnings}
+        return {"arrays": self.arrays, "shape": self.shape, "warnings": self.warnings, "decided": self.decided}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         # Arrays of a pickle may be written to.
-        self.__init__(state["arrays"], state["shape"], state["warnings"])  # type: ignore[misc]
+        self.__init__(**state)  # type: ignore[misc]
 
     def to_xarray(self) -> Any:
         """An ``xarray.Dataset`` with a dimension ``ray`` (or ``row`` and ``column``, or ``axis_0``, ...), units and meanings.

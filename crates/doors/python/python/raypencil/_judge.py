@@ -110,8 +110,8 @@ def _stated(answers: Mapping[str, Any], shape: _arrays.Shape, miss: float | None
     unknown = [name for name in answers if name not in KNOWN]
     if unknown and not is_own:
         raise RaypencilError(f"answers: there is no `{unknown[0]}`; expected some of {', '.join(KNOWN)}")
-    if not {"face", "t", "range"} & set(answers):
-        raise RaypencilError("answers: expected face, t or range; without one of them it is not said which rays hit")
+    if not {"face", "t", "range", "hit"} & set(answers):
+        raise RaypencilError("answers: expected face, t, range or hit; without one of them it is not said which rays hit")
 
     def shaped(name: str, last: _arrays.Shape) -> Any:
         array = np.asarray(answers[name])
@@ -135,6 +135,8 @@ def _stated(answers: Mapping[str, Any], shape: _arrays.Shape, miss: float | None
             stated[name] = _arrays.reals(f"answers: {name}", shaped(name, (3,))).reshape(count, 3)
     if "hit" in answers:
         hit = shaped("hit", ()).reshape(count).astype(bool)
+        if not {"face", "t", "range"} & set(answers):
+            stated["hit"] = hit
         for name, none in (("face", -1), ("t", np.inf), ("range", np.inf)):
             if name in stated:
                 is_kept = hit if name == "face" else hit | np.isneginf(stated[name])
@@ -185,8 +187,9 @@ def judge(
         mesh: as in :func:`cast`.
         rays: (..., 6), (..., 8) or (..., 9), or a tuple of origins, directions, and if wanted t_min, t_max, t_blind.
         answers: a dictionary with some of ``face``, ``t``, ``range``, ``side``, ``point``, ``normal``, ``barycentric``,
-            ``cos_incidence``, as :class:`CastResult` has them, in any type; or a :class:`CastResult`. One of ``face``, ``t``
-            and ``range`` must be there. A ray misses where the face is -1 or 4294967295, where t or range is +Inf or NaN,
+            ``cos_incidence``, as :class:`CastResult` has them, in any type; or a :class:`CastResult`. One of ``face``, ``t``,
+            ``range`` and ``hit`` must be there: ``hit`` alone is a test of occlusion, which says whether anything is hit and not
+            what. A ray misses where the face is -1 or 4294967295, where t or range is +Inf or NaN,
             where either is ``miss``, and where ``hit`` (truth values) says so. Where t and range are -Inf, what is hit is too
             near for the ray's sensor.
         arithmetic: the arithmetic that they were computed in, whatever type they are stored in.
@@ -205,7 +208,8 @@ def judge(
     with stages(progress) as on_stage:
         flat = _raypencil.judge(core, of_rays, name, arithmetic, fronts_only, **stated, on_stage=on_stage)
         why = None
-        if explain and (flat["verdict"] == WRONG).any():
+        # Truth values alone have no mistake that could be told.
+        if explain and "hit" not in stated and (flat["verdict"] == WRONG).any():
             if on_stage is not None:
                 on_stage("looking for a mistake that explains the wrong rays")
             why = _explained(core, of_rays, stated, flat["verdict"], arithmetic, fronts_only)

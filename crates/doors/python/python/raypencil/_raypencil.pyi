@@ -14,6 +14,7 @@ _Path = str | PathLike[str]
 _Pairs = Sequence[tuple[str, str]]
 _Arrays = dict[str, NDArray[Any]]
 _Counts = tuple[int, int, int]
+_Decided = tuple[int, int, int]
 
 @final
 class MeshCore:
@@ -149,7 +150,7 @@ def cast(
     threads: int,
     warn: bool,
     on_stage: _OnStage = None,
-) -> tuple[_Arrays, _Counts, list[str]]: ...
+) -> tuple[_Arrays, _Counts, _Decided | None, list[str]]: ...
 def check_rays(rays: NDArray[np.float64], first: int) -> None: ...
 def cast_warnings(
     mesh: MeshCore, rays: NDArray[np.float64], fronts_only: bool, all: bool, counts: _Counts
@@ -163,6 +164,7 @@ def judge(
     face: NDArray[np.int64] | None = None,
     t: NDArray[np.float64] | None = None,
     range: NDArray[np.float64] | None = None,
+    hit: NDArray[np.bool_] | None = None,
     side: NDArray[np.float64] | None = None,
     point: NDArray[np.float64] | None = None,
     normal: NDArray[np.float64] | None = None,

@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use raypencil_scene::{CastRay, FaceId, Reading, Side, Sides};
 
 use super::quads::{Next, TOGETHER};
-use super::query_ray::QueryRay;
+use super::query_ray::{DecidedBy, QueryRay};
 use super::triangle::{Met, Triangle};
 use super::values::CastMeeting;
 use super::{ExactCast, moved_bundle, walk_bundle};
@@ -62,15 +62,15 @@ impl ExactCast<'_> {
         let query = QueryRay::new(ray);
         let mut nearest = Nearest::new(sides);
         self.walk(ray, |face| nearest.see(face, &query));
-        nearest.meeting(ray, query)
+        nearest.meeting(ray, query).0
     }
 
     /// [`first_meeting`](Self::first_meeting) of many rays, which is quicker than one after the other: `each` gets the index of every
-    /// ray, in their order, and what it reads.
+    /// ray, in their order, what it reads, and which arithmetic decided that.
     ///
     /// ```
     /// use glam::DVec3;
-    /// use raypencil_referee::ExactCast;
+    /// use raypencil_referee::{DecidedBy, ExactCast};
     /// use raypencil_scene::{CastRay, Sides, Triangles};
     ///
     /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
@@ -78,18 +78,18 @@ impl ExactCast<'_> {
     /// let ray = |x: f64| CastRay::new(DVec3::new(x, 0.25, 1.0), DVec3::NEG_Z);
     /// let mut hits = Vec::new();
     /// let rays = [ray(0.25), ray(2.0), ray(0.75)];
-    /// ExactCast::new(&triangle).first_meetings(&rays, Sides::Both, |k, read| {
-    ///     hits.extend(read.hit().map(|(meeting, ties)| (k, meeting.t().double, *ties)));
+    /// ExactCast::new(&triangle).first_meetings(&rays, Sides::Both, |k, read, decided_by| {
+    ///     hits.extend(read.hit().map(|(meeting, _)| (k, meeting.t().double, decided_by)));
     /// });
     /// // The last one passes the edge itself.
-    /// assert_eq!(hits, [(0, 1.0, 1), (2, 1.0, 1)]);
+    /// assert_eq!(hits, [(0, 1.0, DecidedBy::Filter), (2, 1.0, DecidedBy::Exact)]);
     /// # Ok::<(), raypencil_scene::SceneError>(())
     /// ```
     pub fn first_meetings<'r>(
         &self,
         rays: &'r [CastRay],
         sides: Sides,
-        mut each: impl FnMut(usize, Reading<(CastMeeting<'r>, u32)>),
+        mut each: impl FnMut(usize, Reading<(CastMeeting<'r>, u32)>, DecidedBy),
     ) {
         let mut queries = Vec::with_capacity(TOGETHER);
         for (part, rays) in rays.chunks(TOGETHER).enumerate() {
@@ -99,7 +99,8 @@ impl ExactCast<'_> {
                 nearest.see(face, query)
             });
             for (index, (query, nearest)) in queries.drain(..).enumerate() {
-                each(part * TOGETHER + index, nearest.meeting(&rays[index], query));
+                let (read, decided_by) = nearest.meeting(&rays[index], query);
+                each(part * TOGETHER + index, read, decided_by);
             }
         }
     }
@@ -208,13 +209,24 @@ impl Nearest {
         Next::On
     }
 
-    /// What the ray's sensor reads of them.
-    fn meeting<'r>(&self, ray: &'r CastRay, query: QueryRay<'r>) -> Reading<(CastMeeting<'r>, u32)> {
-        let Some((face, side)) = self.lowest() else { return Reading::Miss };
-        if ray.t_blind > 0.0 && face.is_before(ray.t_blind, &query) {
-            return Reading::TooNear;
-        }
-        Reading::Hit((CastMeeting::new(ray, query, face, side), self.count() as u32))
+    /// What the ray's sensor reads of them, and what decided it.
+    fn meeting<'r>(
+        &self,
+        ray: &'r CastRay,
+        query: QueryRay<'r>,
+    ) -> (Reading<(CastMeeting<'r>, u32)>, DecidedBy) {
+        let lowest = self.lowest();
+        let is_too_near =
+            lowest.is_some_and(|(face, _)| ray.t_blind > 0.0 && face.is_before(ray.t_blind, &query));
+        let decided_by = query.decided_by();
+        let read = match lowest {
+            None => Reading::Miss,
+            Some(_) if is_too_near => Reading::TooNear,
+            Some((face, side)) => {
+                Reading::Hit((CastMeeting::new(ray, query, face, side), self.count() as u32))
+            }
+        };
+        (read, decided_by)
     }
 
     fn count(&self) -> usize {

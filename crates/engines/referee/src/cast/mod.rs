@@ -52,6 +52,7 @@ use query_ray::QueryRay;
 use triangle::Triangle;
 
 pub use all::{HitGroup, SidedFace};
+pub use query_ray::DecidedBy;
 pub use values::{CastHit, CastMeeting};
 
 /// The exact answers to any rays on a mesh.

@@ -1,7 +1,7 @@
 //! One ray in three numbers: plain f64 with a bound for the sides of edges, intervals of f64, and exactly where these are in
 //! doubt.
 
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
 use std::cmp::Ordering;
 
 use glam::DVec3;
@@ -47,12 +47,21 @@ pub(super) struct QueryRay<'r> {
     fast: RayNumbers<Interval>,
     /// Apart, for it is large and rare.
     exact: OnceCell<Box<RayNumbers<Dyadic>>>,
+    /// What has decided its signs so far.
+    decided: Cell<DecidedBy>,
 }
 
 impl<'r> QueryRay<'r> {
     pub(super) fn new(ray: &'r CastRay) -> Self {
         let filter = EdgeFilter::exactly(ray.origin, ray.direction);
-        Self { ray, moved: None, filter, fast: RayNumbers::of(ray), exact: OnceCell::new() }
+        Self {
+            ray,
+            moved: None,
+            filter,
+            fast: RayNumbers::of(ray),
+            exact: OnceCell::new(),
+            decided: Cell::default(),
+        }
     }
 
     /// The ray moved sideways by `by`, along the two vectors of [`CastRay::across`].
@@ -62,7 +71,7 @@ impl<'r> QueryRay<'r> {
         let one = Interval::of(1.0);
         let filter =
             EdgeFilter::new(&ScaledRay { origin, origin_scale: one, direction, direction_scale: one });
-        Self { ray, moved: Some(by), filter, fast, exact: OnceCell::new() }
+        Self { ray, moved: Some(by), filter, fast, exact: OnceCell::new(), decided: Cell::default() }
     }
 
     /// |d|, to a few roundings.
@@ -104,7 +113,7 @@ impl<'r> QueryRay<'r> {
     pub(super) fn certain_side(&self, corners: [DVec3; 3], k: usize) -> Option<Ordering> {
         let side = self.filter.sign(corners, k);
         if side.is_some() {
-            count(Path::Filter);
+            self.took(Path::Filter);
         }
         side
     }
@@ -113,6 +122,27 @@ impl<'r> QueryRay<'r> {
     #[inline]
     pub(super) fn t_of_plane(&self, corners: [DVec3; 3]) -> Option<Interval> {
         self.filter.t_of_plane(corners)
+    }
+
+    /// What has decided all signs so far.
+    pub(super) fn decided_by(&self) -> DecidedBy {
+        self.decided.get()
+    }
+
+    /// Takes note of the path of a sign.
+    #[inline]
+    pub(super) fn took(&self, path: Path) {
+        match path {
+            Path::Filter | Path::Plane => {}
+            Path::Interval => self.decided.set(self.decided.get().max(DecidedBy::Intervals)),
+            Path::Exact => self.decided.set(DecidedBy::Exact),
+        }
+        #[cfg(test)]
+        PATHS.with(|paths| {
+            let mut counts = paths.get();
+            counts[path as usize] += 1;
+            paths.set(counts);
+        });
     }
 
     /// The exact sign: by the interval if that is certain, else by exact arithmetic.
@@ -126,7 +156,7 @@ impl<'r> QueryRay<'r> {
     pub(super) fn sign_or(&self, fast: Interval, polynomial: &impl Polynomial) -> Ordering {
         match fast.sign() {
             Some(sign) => {
-                count(Path::Interval);
+                self.took(Path::Interval);
                 sign
             }
             None => self.exact_sign(polynomial),
@@ -135,9 +165,21 @@ impl<'r> QueryRay<'r> {
 
     #[cold]
     fn exact_sign(&self, polynomial: &impl Polynomial) -> Ordering {
-        count(Path::Exact);
+        self.took(Path::Exact);
         polynomial.value(self.exact()).sign().unwrap_or(Ordering::Equal)
     }
+}
+
+/// What decided a question about a ray: the slowest arithmetic that one of its signs needed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub enum DecidedBy {
+    /// Plain `f64`, with a proven bound.
+    #[default]
+    Filter,
+    /// Intervals of `f64`.
+    Intervals,
+    /// Exact arithmetic.
+    Exact,
 }
 
 /// How a sign was found.
@@ -156,16 +198,5 @@ pub(super) enum Path {
 #[cfg(test)]
 thread_local! {
     /// Signs that this thread found on each [`Path`].
-    pub(super) static PATHS: std::cell::Cell<[u64; 4]> = const { std::cell::Cell::new([0; 4]) };
-}
-
-/// Counts a path, in tests.
-#[inline]
-pub(super) fn count(_path: Path) {
-    #[cfg(test)]
-    PATHS.with(|paths| {
-        let mut counts = paths.get();
-        counts[_path as usize] += 1;
-        paths.set(counts);
-    });
+    pub(super) static PATHS: Cell<[u64; 4]> = const { Cell::new([0; 4]) };
 }

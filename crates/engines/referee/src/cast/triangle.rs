@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use glam::DVec3;
 use raypencil_scene::{FaceId, Side, Sides, Triangles};
 
-use super::query_ray::{Path, Polynomial, QueryRay, RayNumbers, count};
+use super::query_ray::{Path, Polynomial, QueryRay, RayNumbers};
 use crate::bvh::InBox;
 use crate::number::{Dyadic, Interval, Number};
 use crate::vector::Vector;
@@ -127,11 +127,11 @@ impl Triangle {
     fn certainly_met(&self, side: Side, ray: &QueryRay<'_>) -> Option<Option<Met>> {
         let t = ray.t_of_plane(self.corners)?;
         if t.low >= ray.t_min() && t.high <= ray.t_max() {
-            count(Path::Plane);
+            ray.took(Path::Plane);
             return Some(Some(Met { side, t }));
         }
         if t.high < ray.t_min() || t.low > ray.t_max() {
-            count(Path::Plane);
+            ray.took(Path::Plane);
             return Some(None);
         }
         None

@@ -243,7 +243,7 @@ fn rays_from_far_away_have_the_same_answers() {
             all[..count].iter().map(|(_, ties)| ties.first().map(|face| (*face, ties.len() as u32)));
         let expected: Vec<Option<(FaceId, u32)>> = expected.collect();
         let mut found = Vec::new();
-        cast.first_meetings(&rays, Sides::Both, |index, read| {
+        cast.first_meetings(&rays, Sides::Both, |index, read, _| {
             assert_eq!(index, found.len());
             found.push(read.hit().map(|(meeting, ties)| (meeting.face(), *ties)));
         });

@@ -181,7 +181,10 @@ impl Judge<'_> {
                 }
             }
             None => {
-                let distance = t.or(range).expect("a distance for each ray, or faces");
+                let Some(distance) = t.or(range) else {
+                    let hit = self.stated.hit.as_ref().expect("faces, distances or hits");
+                    return if hit[index] { self.something(ray, read) } else { Ok(self.unsaid(ray, read)) };
+                };
                 if distance.is_finite() {
                     return self.stated_face(index, ray, distance, t.is_some(), read).map(Reading::Hit);
                 }
@@ -194,6 +197,37 @@ impl Judge<'_> {
             [None, None] => Ok(self.unsaid(ray, read)),
             _ => Ok(Reading::Miss),
         }
+    }
+
+    /// The face that a ray hits of which it is stated only that it hits something: the exact one, or else one that rounding may have
+    /// brought before the ray.
+    fn something(&self, ray: &CastRay, read: &Reading<Vec<FaceId>>) -> Result<Reading<FaceId>, Wrong> {
+        if let Reading::Hit(faces) = read {
+            return Ok(Reading::Hit(faces[0]));
+        }
+        // What the ray meets beyond its ends, and what rays around it do.
+        let endless = CastRay { t_min: 0.0, t_max: f64::INFINITY, ..*ray };
+        let beyond = self.exact.all(&endless, self.sides).into_iter().flat_map(|group| group.faces);
+        let most = self.exact.lateral_error(ray, self.precision);
+        let round = [
+            [1.0, 0.0],
+            [0.0, 1.0],
+            [-1.0, 0.0],
+            [0.0, -1.0],
+            [1.0, 1.0],
+            [-1.0, 1.0],
+            [1.0, -1.0],
+            [-1.0, -1.0],
+        ];
+        let beside = round
+            .into_iter()
+            .flat_map(|by: [f64; 2]| self.exact.first_moved(ray, self.sides, by.map(|part| part * most)));
+        let is_excused = |face: &FaceId| {
+            self.exact.rule(ray, self.sides, Reading::Hit(*face), self.precision) != Ruling::Wrong
+        };
+        let found = beyond.map(|met| met.face).chain(beside).find(is_excused);
+        let exact = read.clone().map(|faces| faces[0]);
+        found.map(Reading::Hit).ok_or(Wrong::Something { exact })
     }
 
     /// What stands in the place of a face, where it is not said: the better one of too near and a miss.

@@ -7,9 +7,9 @@ use crate::answers::{Answers, FirstHit};
 
 /// First hits as another program states them: for each quantity that it gives, one value for each ray, in their order.
 ///
-/// Whether a ray hits is said by `face` if it is given, else by `t`, else by `range`: at least one of them must be. Where it
-/// does not, both distances say why: -Inf says that what is hit is too near, +Inf that nothing is hit. `face` alone says neither, nor
-/// does NaN. Other values of rays that do not hit have no meaning.
+/// Whether a ray hits is said by `face` if it is given, else by `t`, else by `range`, else by `hit`: at least one of them must be. Where
+/// it does not, both distances say why: -Inf says that what is hit is too near, +Inf that nothing is hit. `face` or `hit` alone says
+/// neither, nor does NaN. Other values of rays that do not hit have no meaning.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Stated {
     /// The face; `None` where nothing is hit, or what is hit is too near.
@@ -18,6 +18,8 @@ pub struct Stated {
     pub t: Option<Vec<f64>>,
     /// Distance from the ray's origin; -Inf, +Inf or NaN where there is no face.
     pub range: Option<Vec<f64>>,
+    /// Whether anything is hit that is not too near, of programs that say no more: tests of occlusion.
+    pub hit: Option<Vec<bool>>,
     /// The side that is met.
     pub side: Option<Vec<Option<Side>>>,
     /// The point.
@@ -47,6 +49,7 @@ impl Stated {
             face: Some(answers.values(|hit| Some(hit.face), None)),
             t: Some(answers.distances(|hit| hit.t)),
             range: Some(answers.distances(|hit| hit.range)),
+            hit: None,
             side: Some(answers.values(|hit| Some(hit.side), None)),
             point: vector(|hit| hit.point),
             normal: vector(|hit| hit.normal),
@@ -67,6 +70,7 @@ impl Stated {
             face: some(&self.face, indices),
             t: some(&self.t, indices),
             range: some(&self.range, indices),
+            hit: some(&self.hit, indices),
             side: some(&self.side, indices),
             point: some(&self.point, indices),
             normal: some(&self.normal, indices),

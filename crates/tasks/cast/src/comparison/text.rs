@@ -80,6 +80,8 @@ pub(crate) fn wrong_text(wrong: &Wrong) -> String {
             Reading::TooNear => format!("a hit at {stated}; exactly {TOO_NEAR}"),
             Reading::Miss => format!("a hit at {stated}; exactly nothing is hit"),
         },
+        Wrong::Something { exact: Reading::TooNear } => format!("a hit; exactly {TOO_NEAR}"),
+        Wrong::Something { .. } => "a hit; exactly nothing is hit".into(),
         Wrong::Contradiction => "one of t and range is -Inf, too near, and the other is not".into(),
         Wrong::Value { value, error, bound } => {
             format!("{} is off by {error:.3e}; rounding explains {bound:.3e}", value.name())

@@ -57,6 +57,11 @@ pub enum Wrong {
         /// The exact one.
         exact: Reading<f64>,
     },
+    /// It is stated that something is hit, not what, and nothing is hit, nor by a ray nearby.
+    Something {
+        /// The exact answer.
+        exact: Reading<FaceId>,
+    },
     /// One of t and range says that what is hit is too near, the other that nothing is hit.
     Contradiction,
     /// The face is right and a value is not.

@@ -75,6 +75,8 @@ pub(super) fn read_candidate(
         face,
         t: distance("t")?,
         range: distance("range")?,
+        // Truth values alone are judged from Python.
+        hit: None,
         side,
         point: vectors("point")?,
         normal: vectors("normal")?,

@@ -349,6 +349,7 @@ fn said_and_true(wrong: &Wrong) -> (String, Option<String>) {
                 Reading::Miss => "no hit".into(),
             }),
         ),
+        Wrong::Something { exact } => ("a hit".into(), Some(face(exact))),
         Wrong::Contradiction => ("too near in one of t and range".into(), None),
         Wrong::Value { value, .. } => (value.name().into(), None),
     }

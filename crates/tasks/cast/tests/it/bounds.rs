@@ -4,7 +4,7 @@
 use glam::DVec3;
 use raypencil_cast::{CastValue, RayVerdict, Stated, Wrong, compare};
 use raypencil_referee::ExactCast;
-use raypencil_scene::{CastRay, FaceId, Precision, Sides, Silent, Triangles};
+use raypencil_scene::{CastRay, FaceId, Precision, Reading, Sides, Silent, Triangles};
 
 /// A right triangle with edges of 3, 4 and 5 in the plane z = 2: kappa = 4 * 5 / 12, the least height 12 / 5.
 fn triangle() -> Triangles {
@@ -126,4 +126,48 @@ fn one_component_that_is_no_number_is_wrong() {
             assert_eq!(wrong(&stated, Precision::F32), Some(value), "{value:?} {component} {wild}");
         }
     }
+}
+
+/// A program that says only whether anything is hit: right, wrong, and within rounding of an edge and of an end.
+#[test]
+fn hits_alone_are_judged() {
+    let mesh = triangle();
+    let down = |x: f64, y: f64| CastRay::new(DVec3::new(x, y, 9.0), DVec3::new(0.0, 0.0, -1.0));
+    let verdict = |ray: CastRay, hit: bool, precision: Precision| {
+        let stated = Stated { hit: Some(vec![hit]), ..Stated::default() };
+        compare(&mesh, &[ray], Sides::Both, &stated, precision, &Silent).verdicts[0]
+    };
+    let is_same = |verdict| matches!(verdict, RayVerdict::Same { .. });
+    let is_rounding = |verdict| matches!(verdict, RayVerdict::Rounding { .. });
+    let is_wrong = |verdict| matches!(verdict, RayVerdict::Wrong(_));
+    let ends = |t_max: f64| CastRay { t_max, ..down(2.0, 2.0) };
+    // The face is at x from 1 on, and at t = 7.
+    let pairs =
+        [(down(2.0, 2.0), down(0.0, 2.0)), (down(1.0, 2.0), down(0.999, 2.0)), (ends(7.0), ends(6.99))];
+    for (met, missed) in pairs {
+        for precision in [Precision::F64, Precision::F32] {
+            assert!(is_same(verdict(met, true, precision)), "{met:?}");
+            assert!(is_same(verdict(missed, false, precision)), "{missed:?}");
+            assert!(is_wrong(verdict(missed, true, precision)), "{missed:?}");
+        }
+    }
+    assert!(is_wrong(verdict(down(2.0, 2.0), false, Precision::F32)));
+    // Beside the edge, and before the face, by less than f32 rounds and more than f64 does.
+    let off = 1e-6;
+    let beside = [
+        (down(1.0 - off, 2.0), false),
+        (down(1.0 + off, 2.0), true),
+        (ends(7.0 - off), false),
+        (ends(7.0 + off), true),
+    ];
+    for (ray, is_met) in beside {
+        assert!(is_same(verdict(ray, is_met, Precision::F64)), "{ray:?}");
+        assert!(is_wrong(verdict(ray, !is_met, Precision::F64)), "{ray:?}");
+        assert!(is_rounding(verdict(ray, !is_met, Precision::F32)), "{ray:?}");
+    }
+    // What is too near is no hit.
+    let blind = CastRay { t_blind: 8.0, ..down(2.0, 2.0) };
+    assert!(is_same(verdict(blind, false, Precision::F64)));
+    let exact = Reading::TooNear;
+    assert_eq!(verdict(blind, true, Precision::F64), RayVerdict::Wrong(Wrong::Something { exact }));
 }

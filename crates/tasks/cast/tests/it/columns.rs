@@ -1,7 +1,13 @@
 //! Columns have the numbers of answers, bit for bit, and only those that are asked for.
 
+use std::path::Path;
+
 use glam::DVec3;
-use raypencil_cast::{Answers, Caster, FirstColumns, Questions, ReadingCounts, Values, cast_with};
+use raypencil_cast::{
+    Answers, Caster, DecidedCounts, FirstColumns, Questions, ReadingCounts, Values, cast, cast_with,
+    read_rays,
+};
+use raypencil_mesh_io::read_triangles;
 use raypencil_referee::ExactCast;
 use raypencil_scene::{CastRay, Side, Sides, Silent, Triangles};
 use raypencil_tracer::TracerCast;
@@ -34,6 +40,7 @@ fn counts_of(answers: &Answers) -> ReadingCounts {
         hits: answers.counts().0 as u64,
         too_near: answers.too_near() as u64,
         backs: answers.hits().filter(|hit| hit.side == Side::Back).count() as u64,
+        decided: answers.decided.unwrap_or_default(),
     }
 }
 
@@ -88,4 +95,44 @@ fn parts_one_after_the_other_are_the_whole_and_only_what_is_asked_is_there() {
     let points = |columns: &FirstColumns| bits(columns.point.as_ref().unwrap().concat());
     assert_eq!((whole.face.as_ref(), points(&whole)), (parts.face.as_ref(), points(&parts)));
     assert!(whole.t.is_none() && whole.normal.is_none() && whole.ties.is_none());
+}
+
+/// Every ray counts once, and each path is taken: rays anywhere need no intervals, hard ones do, and exact arithmetic.
+#[test]
+fn the_hard_rays_take_each_path() {
+    let hard = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../data/rays/hard");
+    let of = |family: &str| {
+        let folder = hard.join(family);
+        let mesh = read_triangles(&folder.join("mesh.obj")).unwrap().triangles;
+        let rays = read_rays(&folder.join("rays.npy")).unwrap().rays;
+        let answers = cast(&mesh, &rays, Sides::Both, Questions::default(), &Silent);
+        let decided = answers.decided.expect("the referee's answers");
+        assert_eq!(decided.filter + decided.intervals + decided.exact, rays.len() as u64, "{family}");
+        // The same by columns, whatever they are asked for.
+        let exact = ExactCast::new(&mesh);
+        let mut columns = FirstColumns::new(rays.len(), Values::named(["face"]).unwrap());
+        let counts = columns.part(0..rays.len()).ask(Caster::Referee(&exact), &rays, Sides::Both);
+        assert_eq!(counts.decided, decided, "{family}");
+        decided
+    };
+    let counts =
+        ["grazing", "edges", "vertices", "one-ulp-beside", "tiny", "huge", "needles", "just-before"].map(of);
+    let all = counts.into_iter().fold(DecidedCounts::default(), DecidedCounts::and);
+    assert!(all.filter > 100 && all.exact > 1000, "{all:?} of {counts:?}");
+    // Whatever is so near an edge is too near for intervals. These tell a ray that is beside it by a few hundred roundings.
+    let beside =
+        |k: u32| CastRay::new(DVec3::new(3.0 + 2e-15 * f64::from(k), 4.3, 5.0), DVec3::new(0.0, 0.0, -2.0));
+    let near: Vec<CastRay> = (0..400).map(beside).collect();
+    let beside = cast(&ground(), &near, Sides::Both, Questions::default(), &Silent).decided.unwrap();
+    assert!(beside.filter > 100 && beside.intervals > 10 && beside.exact > 0, "{beside:?}");
+    // Through vertices, it is exact; rays that meet nothing but faces' insides need none of it.
+    let [_, edges, vertices, ..] = counts;
+    assert!(edges.exact > 0 && vertices.exact > 0, "{edges:?} {vertices:?}");
+    let rays: Vec<CastRay> =
+        rays().iter().map(|ray| CastRay { t_blind: 0.0, origin: ray.origin + 0.01, ..*ray }).collect();
+    let easy = cast(&ground(), &rays, Sides::Both, Questions::default(), &Silent).decided.unwrap();
+    assert!(easy.filter > 1600, "{easy:?}");
+    // The tracer decides nothing exactly.
+    let tracer = TracerCast::new(&ground());
+    assert_eq!(Answers::traced(&tracer, &rays, Sides::Both).decided, None);
 }

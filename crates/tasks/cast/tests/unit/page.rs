@@ -44,7 +44,13 @@ fn a_head_has_a_row_for_each_channel_with_the_highest_on_top() {
 fn what_finds_no_room_is_named() {
     // A million rays on one side: six channels of a million numbers, of thirteen.
     let rays = vec![CastRay::new(glam::DVec3::ZERO, glam::DVec3::X); 1_000_000];
-    let answers = Answers { first: vec![Reading::Miss; rays.len()], any: None, all: None, margins: None };
+    let answers = Answers {
+        first: vec![Reading::Miss; rays.len()],
+        any: None,
+        all: None,
+        margins: None,
+        decided: None,
+    };
     let page = CastPage {
         title: "many",
         facts: &[],
