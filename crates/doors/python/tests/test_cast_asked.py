@@ -241,3 +241,18 @@ def test_a_notebook_shows_arrays_and_a_picture(cube: Mesh) -> None:
     assert "<td>cos_incidence</td><td>float64 (4, 3)</td>" in shown
     plain = cast(cube, random_rays(5), values=("side",), query="all")._repr_html_()
     assert "img" not in plain and "<td>all_t</td>" in plain and "<td>point</td>" not in plain
+
+
+def test_a_result_says_which_arithmetic_decided(cube: Mesh, monkeypatch: pytest.MonkeyPatch) -> None:
+    anywhere = random_rays(300)
+    through_edges = np.concatenate([anywhere, np.tile([0.0, 0, 5, 0, 0, -1, 0, np.inf], (20, 1))])
+    told = cast(cube, through_edges).decided
+    assert told is not None and list(told) == ["filter", "intervals", "exact"]
+    assert told["filter"] >= 290 and told["exact"] >= 20 and sum(told.values()) == 320
+    # The same in pieces, whatever values are asked for, and after a pickle.
+    monkeypatch.setattr(_cast, "RAYS_AT_A_TIME", 64)
+    pieces = cast(cube, through_edges, values="face")
+    assert pieces.decided == told == pickle.loads(pickle.dumps(pieces)).decided
+    # Where no first hit is asked for, and by the tracer, nothing is decided so.
+    assert cast(cube, anywhere, values=(), query="any").decided is None
+    assert cast(cube, anywhere, with_="tracer").decided is None and pieces[:3].decided is None

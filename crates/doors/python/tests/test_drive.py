@@ -7,6 +7,7 @@ import json
 import threading
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -176,3 +177,35 @@ def test_frames_may_be_taken_by_another_thread() -> None:
     thread.start()
     thread.join(60)
     assert [frame.index for frame in taken] == [0, 1, 2]
+
+
+def test_stripes_of_ones_own(command: Command, tmp_path: Path) -> None:
+    (tmp_path / "short.toml").write_text(SHORT)
+    command("drive", "short.toml", "--record", "npy,points", "-o", "own")
+    recording = tmp_path / "own/recording"
+    rows = np.load(recording / "stripes.npy")
+    # Every second edge: another drive than with the rover's own.
+    half = tmp_path / "half"
+    half.mkdir()
+    np.save(half / "stripes.npy", rows[::2])
+    command("drive", "short.toml", "--stripes", "half", "--record", "points", "-o", "theirs")
+    expected = np.load(tmp_path / "theirs/recording/points.npy")
+    assert 0 < len(expected) < len(np.load(recording / "points.npy"))
+    scene = Scene(SHORT, name="short")
+    given: list[Any] = [half, str(half), rows[::2], rows[::2].tolist()]
+    for stripes in given:
+        frames = list(drive(scene, stripes=stripes, images=False))
+        assert same_bits(np.concatenate([frame.points for frame in frames]), expected)
+    # The rover's own, from a recording and from its frames.
+    frames = list(drive(scene, images=False))
+    of_frames = np.concatenate([frame.stripes for frame in frames])
+    again = list(drive(scene, stripes=of_frames, images=False))
+    assert same_bits(np.concatenate([frame.points for frame in again]), np.load(recording / "points.npy"))
+    with pytest.raises(RaypencilError, match=r"stripes have the shape \(3, 4\); expected \(n, 5\)"):
+        drive(scene, stripes=np.zeros((3, 4)))
+    with pytest.raises(RaypencilError, match=r"row 1, frame.*expected a whole number"):
+        drive(scene, stripes=np.array([[0, -1, 0, 3, 4], [0.5, -1, 0, 3, 4]]))
+    with pytest.raises(RaypencilError, match="lies in the output"):
+        drive(scene, stripes=recording, output=tmp_path / "own")
+    with pytest.raises(FileNotFoundError):
+        drive(scene, stripes=tmp_path / "nowhere")

@@ -140,8 +140,8 @@ def test_fronts_only_is_another_question(cube: Mesh) -> None:
 @pytest.mark.parametrize(
     ("answers", "words"),
     [
-        ({}, "expected face, t or range"),
-        ({"point": np.zeros((400, 3))}, "expected face, t or range"),
+        ({}, "expected face, t, range or hit"),
+        ({"point": np.zeros((400, 3))}, "expected face, t, range or hit"),
         ({"T": np.zeros(400)}, "there is no `T`; expected some of face"),
         ({"t": np.zeros(399)}, r"t has the shape \(399,\); expected \(400,\)"),
         ({"t": np.zeros(400), "point": np.zeros((400, 2))}, r"point has the shape \(400, 2\); expected \(400, 3\)"),
@@ -187,3 +187,20 @@ def test_judgements_can_be_pickled(cube: Mesh) -> None:
     assert judged.passes and not judged.classes.flags.writeable
     dataset = judged.to_xarray()
     assert dataset.classes.attrs["flag_meanings"] == "same tie rounding wrong" and dataset.moved.shape == (400, 2)
+
+
+def test_hits_alone_are_tests_of_occlusion(cube: raypencil.Mesh) -> None:
+    hit = cast(cube, RAYS).hit
+    judged = judge(cube, RAYS, {"hit": hit})
+    assert judged.passes and judged.counts["same"] == 400 and 0 < hit.sum() < 400
+    other = hit.copy()
+    other[[3, 77]] ^= True
+    wrong = judge(cube, RAYS, {"hit": other})
+    assert wrong.wrong.tolist() == [3, 77] and wrong.why is None
+    assert any(word in wrong.text for word in ("a hit; exactly nothing is hit", "no hit; exactly it is face"))
+    # Beside an edge by less than float32 rounds.
+    beside = ([-1.0000001, 0.3, 5.0], [0.0, 0.0, -1.0])
+    assert judge(cube, beside, {"hit": np.array(True)}, "f32").counts["rounding"] == 1
+    assert judge(cube, beside, {"hit": np.array(True)}).counts["wrong"] == 1
+    with pytest.raises(RaypencilError, match="expected face, t, range or hit"):
+        judge(cube, RAYS, {"side": np.ones(400)})

@@ -72,7 +72,6 @@ ONLY_COMMAND = {
     "check --seed": "is for a check that is made again, which a check from Python names the answer for",
     "check CANDIDATE": "`answers`, which may be arrays",
     "drive --both": "`with_` takes two renderers",
-    "drive --stripes": "stripes from a file are taken by the command alone",
     "generate --output": "a mesh is returned; `save` writes it",
     "generate --window": "the model of `coarse` is a file: the command takes a part of it",
     "pack --blind": "random scenes are the command's alone",

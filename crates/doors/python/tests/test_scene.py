@@ -161,3 +161,38 @@ def test_generated_ground_is_the_same_by_table_and_by_call() -> None:
     mesh = raypencil.terrain.generate("smooth", 3, extent=12)
     assert mesh.vertices.tobytes() == (scene.mesh.vertices + scene.origin).tobytes()
     assert np.array_equal(mesh.faces, scene.mesh.faces)
+
+
+def test_a_mesh_in_memory_is_a_ground(tmp_path: Path) -> None:
+    x, y = np.meshgrid(np.linspace(-4, 4, 9), np.linspace(-4, 4, 9), indexing="ij")
+    vertices = np.stack([x, y, 0.1 * np.sin(x)], axis=-1).reshape(-1, 3)
+    corner = (np.arange(8)[:, None] * 9 + np.arange(8)).ravel()
+    faces = np.concatenate([np.stack([corner, corner + 9, corner + 10], -1), np.stack([corner, corner + 10, corner + 1], -1)])
+    mesh = raypencil.Mesh(vertices, faces)
+    scene = Scene(mesh, camera={"pitch_down_deg": 25}, name="waves")
+    assert scene.name == "waves" and len(scene.mesh.faces) == 128
+    # In the scene frame, and rounded to single precision.
+    assert np.abs(scene.mesh.vertices + scene.origin - vertices).max() < 1e-6
+    # It is that of the file of this mesh.
+    path = tmp_path / "waves.ply"
+    path.write_bytes(Path(scene._source).read_bytes())
+    theirs = Scene(path, camera={"pitch_down_deg": 25})
+    assert (theirs.sha256, theirs.source_sha256) == (scene.sha256, scene.source_sha256)
+    assert np.isfinite(raypencil.render(scene).camera["range"]).any()
+    # As any mesh that `cast` takes, and as the ground of another scene.
+    assert Scene((vertices, faces), name="waves").sha256 == Scene(terrain=mesh).sha256 == raypencil.Scene(mesh).sha256
+    rig = "version = 1\nvehicle = { position_m = [1, 1] }\nterrain = { builtin = \"pyramids\" }\n"
+    other = Scene(rig, terrain=mesh)
+    assert len(other.mesh.faces) == 128 and other.vehicle is not None and other.vehicle.position[0] == 1
+    # Copies and other settings have it too, also when the first scene is gone.
+    turned, again = scene.replace({"camera.pitch_down_deg": 30}), pickle.loads(pickle.dumps(scene))
+    moved, sha256 = pickle.loads(pickle.dumps(other)), scene.sha256
+    del scene
+    assert again.sha256 == sha256 != turned.sha256 and moved.sha256 == other.sha256
+    assert len(turned.replace({"camera.pitch_down_deg": 20}).mesh.faces) == 128
+    with pytest.raises(RaypencilError, match="two meshes"):
+        Scene(mesh, terrain=mesh)
+    with pytest.raises(RaypencilError, match="name is 'a/b'"):
+        Scene(mesh, name="a/b")
+    with pytest.raises(RaypencilError, match="no triangles"):
+        Scene(raypencil.Mesh(vertices, np.zeros((0, 3), int)))

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import copy
 from typing import Any
 
 import numpy as np
 import pytest
 
+import raypencil
 from raypencil import RaypencilError
 from raypencil.trimesh import RayMeshIntersector
 
@@ -125,3 +127,108 @@ def test_no_rays(mesh: Any) -> None:
         ours.intersects_any([[0, 0, 0]], [[0, 0, 1], [0, 0, 1]])
     with pytest.raises(RaypencilError, match=r"points have the shape"):
         ours.contains_points([0, 0, 0])
+
+
+def test_arguments_and_copies_are_those_of_trimesh() -> None:
+    box = trimesh.creation.box()
+    theirs = pytest.importorskip("trimesh.ray.ray_pyembree", exc_type=ImportError).RayMeshIntersector
+    question = ([[0.1, 0.2, 3.0]], [[0.0, 0.0, -1.0]])
+    for made in (
+        RayMeshIntersector(geometry=box, scale_to_box=False),
+        RayMeshIntersector(box, False),
+        RayMeshIntersector(box, scale_to_box=True),
+    ):
+        assert made.mesh is box is theirs(geometry=box, scale_to_box=True).mesh
+        assert made.intersects_any(*question).all()
+    with pytest.raises(RaypencilError, match="no mesh is given"):
+        RayMeshIntersector()
+    with pytest.raises(RaypencilError, match="two meshes are given"):
+        RayMeshIntersector(box, geometry=box)
+
+
+def test_a_copy_has_a_mesh_of_its_own_and_the_same_caster() -> None:
+    box = trimesh.creation.box()
+    box.ray = RayMeshIntersector(box, with_="tracer")
+    down = ([[0.1, 0.2, 3.0]], [[0.0, 0.0, -1.0]])
+    assert copy.copy(box.ray).mesh is box
+    for copied in (box.ray.copy(), copy.deepcopy(box.ray)):
+        assert copied.mesh is not box and copied.mesh.ray is copied and copied._with == "tracer"
+        copied.mesh.apply_translation([0, 0, 1])
+        place, _, _ = copied.intersects_location(*down)
+        assert place[0, 2] == 1.5 and box.ray.intersects_location(*down)[0][0, 2] == 0.5
+    ours = raypencil.Mesh(box.vertices, box.faces)
+    assert copy.deepcopy(RayMeshIntersector(ours)).mesh is ours
+
+
+# What trimesh's own tests of rays ask (`test_ray`, `test_ray_upstream`), which its package does not bring along: with our rays.
+
+
+def ours_on(mesh: Any) -> Any:
+    mesh.ray = RayMeshIntersector(mesh)
+    return mesh
+
+
+def test_suite_every_vertex_is_hit_from_within() -> None:
+    for mesh in (trimesh.creation.box(), trimesh.creation.icosphere(subdivisions=2), trimesh.creation.cylinder(1.0, 2.0)):
+        ray = ours_on(mesh).ray
+        inside = np.zeros_like(mesh.vertices)
+        place, index, _ = ray.intersects_location(inside, mesh.vertices)
+        # Each once, at the vertex itself up to rounding.
+        assert np.array_equal(index, np.arange(len(mesh.vertices)))
+        assert np.allclose(place, mesh.vertices, rtol=0, atol=1e-14)
+        tri, index, _ = ray.intersects_id(inside, mesh.vertices, return_locations=True, multiple_hits=False)
+        assert all(vertex in mesh.faces[face] for face, vertex in zip(tri, index, strict=True))
+
+
+def test_suite_every_edge_is_hit_once() -> None:
+    mesh = ours_on(trimesh.creation.icosphere(subdivisions=2))
+    middles = mesh.vertices[mesh.edges_unique].mean(axis=1)
+    outward = middles / np.linalg.norm(middles, axis=1)[:, np.newaxis]
+    hit = mesh.ray.intersects_any(3 * outward, -outward)
+    first = mesh.ray.intersects_first(3 * outward, -outward)
+    assert hit.all() and (first >= 0).all()
+    place, index, _ = mesh.ray.intersects_location(3 * outward, -outward)
+    assert (np.bincount(index, minlength=len(outward)) == 2).all()
+    nearest = place[np.searchsorted(index, np.arange(len(outward)))]
+    assert np.linalg.norm(nearest - middles, axis=1).max() < 1e-12
+
+
+def test_suite_a_grid_over_a_box() -> None:
+    box = ours_on(trimesh.creation.box())
+    x, y = (axis.ravel() for axis in np.meshgrid(*(np.linspace(-0.75, 0.75, 13),) * 2))
+    origins = np.column_stack([x, y, np.full(x.shape, 2.0)])
+    directions = np.tile([0.0, 0.0, -1.0], (len(origins), 1))
+    within = (np.abs(origins[:, :2]) <= 0.5).all(axis=1)
+    # The border of the box belongs to it.
+    assert np.array_equal(box.ray.intersects_any(origins, directions), within)
+    place, index, _ = box.ray.intersects_location(origins, directions)
+    strictly = (np.abs(origins[:, :2]) < 0.5).all(axis=1)
+    counts = np.bincount(index, minlength=len(origins))
+    assert (counts[strictly] == 2).all() and (counts[~within] == 0).all()
+    assert set(np.abs(place[np.isin(index, np.flatnonzero(strictly)), 2])) == {0.5}
+    # From behind nothing is hit.
+    assert not box.ray.intersects_any(origins, -directions).any()
+
+
+def test_suite_multiple_hits_begin_with_the_first() -> None:
+    mesh = ours_on(trimesh.util.concatenate([trimesh.creation.icosphere(radius=radius) for radius in (1.0, 2.0, 3.0)]))
+    origins, directions = rays()
+    origins = 4 * origins / np.linalg.norm(origins, axis=1)[:, np.newaxis]
+    directions = 0.3 * directions - origins
+    tri, index, place = mesh.ray.intersects_id(origins, directions, return_locations=True, multiple_hits=True)
+    first, of_ray, nearest = mesh.ray.intersects_id(origins, directions, return_locations=True, multiple_hits=False)
+    begins = np.unique(index, return_index=True)[1]
+    assert np.array_equal(index[begins], of_ray) and np.array_equal(tri[begins], first)
+    assert np.array_equal(place[begins], nearest) and np.bincount(index).max() == 6
+
+
+def test_suite_contains_follows_a_mesh_that_moves() -> None:
+    box = ours_on(trimesh.creation.box(extents=[2, 2, 2]))
+    points = np.random.default_rng(3).uniform(-3, 3, (500, 3))
+    for shift in ([0, 0, 0], [1, -0.5, 0.25], [1e6, 0, 0]):
+        box.apply_translation(shift)
+        expected = (np.abs(points - box.center_mass.round(9)) < 1).all(axis=1)
+        assert np.array_equal(box.contains(points), expected)
+    assert box.contains([[1e6 + 1.0, -0.5, 0.25]]).tolist() == [True]
+    for count in (0, 1, 7):
+        assert box.contains(points[:count]).shape == (count,)

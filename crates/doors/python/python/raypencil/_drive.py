@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 import os
+import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _arrays, _raypencil
 from ._errors import RaypencilError, optional
@@ -229,6 +231,7 @@ def drive(
     images: bool = True,
     record: Sequence[str] = (),
     output: str | os.PathLike[str] | None = None,
+    stripes: ArrayLike | str | os.PathLike[str] | None = None,
     progress: Progress = False,
 ) -> Drive:
     """Drives the rover over a scene: an iterator over frames.
@@ -245,6 +248,8 @@ def drive(
         images: keep the images of each frame.
         record: with ``output``: ``images``, ``png``, ``npy``, ``points``, ``poses``, ``maps``, ``mcap``, ``all``.
         output: the folder of the command ``drive``. It is complete when the last frame was taken.
+        stripes: stripes in place of the rover's own extraction: a folder with ``stripes.npy``, such as a recording; or an array
+            (n, 5) of frame, step of a scan (-1: none), beam, column and row, as :attr:`Frame.stripes` of all frames together.
         progress: ``True``: a bar by tqdm, if that is installed. A function is called after each frame.
 
     Raises:
@@ -264,8 +269,26 @@ def drive(
         with_ = "scanline-paper" if as_printed else "scanline"
     names = [with_] if isinstance(with_, str) else list(with_)
     folder = None if output is None else os.fspath(output)
-    core = _raypencil.DriveCore(
-        as_scene(scene)._core, points, to_global, as_printed, list((rules or {}).items()), list(record), names,
-        list((switches or {}).items()), images, folder, None,
-    )
-    return Drive(core, progress)
+    core = as_scene(scene)._core
+
+    def begun(of_stripes: tuple[str, bool] | None) -> Drive:
+        made = _raypencil.DriveCore(
+            core, points, to_global, as_printed, list((rules or {}).items()), list(record), names,
+            list((switches or {}).items()), images, folder, of_stripes, None,
+        )  # fmt: skip
+        return Drive(made, progress)
+
+    if stripes is None:
+        return begun(None)
+    if isinstance(stripes, (str, os.PathLike)):
+        given = os.fspath(stripes)
+        if folder is not None and Path(given).resolve().is_relative_to(Path(folder).resolve()):
+            raise RaypencilError(f"stripes: {given} lies in the output {folder}; expected another output")
+        return begun((given, True))
+    rows = np.asarray(stripes, dtype=np.float64)
+    if rows.ndim != 2 or rows.shape[1] != 5:
+        raise RaypencilError(f"stripes have the shape {rows.shape}; expected (n, 5): frame, step, beam, column, row")
+    # They are read before the drive begins.
+    with tempfile.TemporaryDirectory() as beside:
+        np.save(Path(beside, "stripes.npy"), np.ascontiguousarray(rows))
+        return begun((beside, False))

@@ -127,6 +127,7 @@ class DriveCore:
         switches: _Pairs,
         images: bool,
         output: _Path | None = None,
+        stripes: tuple[_Path, bool] | None = None,
         on_stage: _OnStage = None,
     ) -> DriveCore: ...
     @property

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,7 +15,7 @@ from numpy.typing import NDArray
 
 from . import _raypencil, _toml
 from ._errors import RaypencilError
-from ._mesh import BUILTIN_NAMES, Mesh
+from ._mesh import BUILTIN_NAMES, Mesh, as_mesh
 from ._progress import Progress, stages
 
 
@@ -104,19 +106,20 @@ class Scene:
     Args:
         source: a built-in ground (``pyramids``, ``facets``); a path to a scene file ``.toml``, a terrain (``.glb``, ``.gltf``,
             ``.stl``, ``.obj``, ``.ply``) or an elevation model ``.tif``; or the text of a scene file (what has a line break
-            is a text).
+            is a text); or a mesh in memory, as :func:`cast` takes it, in metres and z up: its vertices become offsets from an
+            origin in single precision, as those of a file do.
         name: what messages and folders call a scene without a file.
         settings: keys of docs/guide/scene.md joined by dots, in the file's units:
             ``{"camera.pitch_down_deg": 25, "beam.0.thickness_mm": 4}``.
         progress: see :func:`cast`.
         tables: tables of a scene file: ``Scene(camera={"pitch_down_deg": 25}, beam=[{"rows": 8}])``. With a ``source`` they
-            are settings of it.
+            are settings of it. ``terrain`` may be a mesh in memory, in place of the ground that the source has.
 
     Raises:
         RaypencilError: a key that is not there, a value out of range: the message has the place in the file or the setting.
             If a file is not there, also a ``FileNotFoundError``.
 
-    A scene can be pickled: by its source, whose files must be the same where it is unpickled.
+    A scene can be pickled: by its source, whose files must be the same where it is unpickled. A mesh in memory goes along.
     """
 
     _core: _raypencil.SceneCore
@@ -124,10 +127,12 @@ class Scene:
     _is_text: bool
     _name: str
     _settings: tuple[tuple[str, str], ...]
+    #: The file of a mesh in memory, if one is the ground.
+    _ground: _GroundFile | None = None
 
     def __init__(
         self,
-        source: str | os.PathLike[str] | None = None,
+        source: Any = None,
         /,
         *,
         name: str = "scene",
@@ -136,6 +141,18 @@ class Scene:
         **tables: Any,
     ) -> None:
         given = list(_toml.settings(settings or {}))
+        if _is_mesh(tables.get("terrain")):
+            ground = tables.pop("terrain")
+            if _is_mesh(source):
+                raise RaypencilError("the source and terrain are two meshes; expected one")
+            if source is None:
+                source = ground
+            else:
+                self._ground = _GroundFile(_ply(as_mesh(ground)), _checked(name))
+                given = [self._ground.setting, *given]
+        if _is_mesh(source):
+            self._ground = _GroundFile(_ply(as_mesh(source)), _checked(name))
+            source = self._ground.path
         if source is None:
             text, is_text = _toml.document(tables), True
         else:
@@ -147,8 +164,8 @@ class Scene:
     def _load(
         self, source: str, is_text: bool, name: str, settings: tuple[tuple[str, str], ...], progress: Progress = False
     ) -> None:
-        if is_text and not name.replace("-", "").replace("_", "").replace(".", "").isalnum():
-            raise RaypencilError(f"name is {name!r}; expected letters, digits, '-', '_' and '.'")
+        if is_text:
+            _checked(name)
         self._source, self._is_text, self._name, self._settings = source, is_text, name, settings
         with stages(progress) as on_stage:
             self._core = _raypencil.SceneCore(source, is_text, name, list(settings), on_stage)
@@ -165,6 +182,7 @@ class Scene:
             RaypencilError: a key that is not there, a value out of range.
         """
         scene = Scene.__new__(Scene)
+        scene._ground = self._ground
         more = (*_toml.settings(settings or {}), *_toml.settings(tables))
         scene._load(self._source, self._is_text, self._name, self._settings + more)
         return scene
@@ -255,7 +273,8 @@ class Scene:
         source = self._source
         if not self._is_text and source not in BUILTIN_NAMES:
             source = os.path.abspath(source)
-        return _unpickled, (source, self._is_text, self._name, self._settings, self.source_sha256)
+        ground = None if self._ground is None else self._ground.content
+        return _unpickled, (source, self._is_text, self._name, self._settings, self.source_sha256, ground)
 
 
 def _posed(numbers: Mapping[str, Any]) -> dict[str, Any]:
@@ -263,13 +282,67 @@ def _posed(numbers: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _unpickled(
-    source: str, is_text: bool, name: str, settings: tuple[tuple[str, str], ...], sha256: str
+    source: str,
+    is_text: bool,
+    name: str,
+    settings: tuple[tuple[str, str], ...],
+    sha256: str,
+    ground: bytes | None = None,
 ) -> Scene:
     scene = Scene.__new__(Scene)
+    is_ground_a_setting = False
+    if ground is not None:
+        scene._ground = _GroundFile(ground, name)
+        is_ground_a_setting = any(key == "terrain.file" for key, _ in settings)
+        if is_ground_a_setting:
+            settings = tuple(scene._ground.setting if one[0] == "terrain.file" else one for one in settings)
+        else:
+            source = scene._ground.path
     scene._load(source, is_text, name, settings)
-    if scene.source_sha256 != sha256:
+    # The place of a mesh's file is another one.
+    if scene.source_sha256 != sha256 and not is_ground_a_setting:
         raise RaypencilError(f"{source}: the scene is another one than that which was pickled; expected {sha256}")
     return scene
+
+
+class _GroundFile:
+    """A mesh in memory as a file, for as long as a scene has it."""
+
+    def __init__(self, content: bytes, name: str) -> None:
+        self._folder = tempfile.TemporaryDirectory(prefix="raypencil-")
+        self.path = os.path.join(self._folder.name, f"{name}.ply")
+        Path(self.path).write_bytes(content)
+
+    @property
+    def content(self) -> bytes:
+        return Path(self.path).read_bytes()
+
+    @property
+    def setting(self) -> tuple[str, str]:
+        """The key that makes it the ground."""
+        return "terrain.file", _toml.value(self.path, "terrain.file")
+
+
+def _is_mesh(given: Any) -> bool:
+    return not (given is None or isinstance(given, (str, os.PathLike, Mapping, Scene)))
+
+
+def _checked(name: str) -> str:
+    if not name.replace("-", "").replace("_", "").replace(".", "").isalnum():
+        raise RaypencilError(f"name is {name!r}; expected letters, digits, '-', '_' and '.'")
+    return name
+
+
+def _ply(mesh: Mesh) -> bytes:
+    """A mesh as a binary PLY file, in double precision."""
+    rows = np.empty(len(mesh.faces), dtype=[("count", "u1"), ("corners", "<u4", (3,))])
+    rows["count"], rows["corners"] = 3, mesh.faces
+    head = (
+        "ply\nformat binary_little_endian 1.0\n"
+        f"element vertex {len(mesh.vertices)}\nproperty double x\nproperty double y\nproperty double z\n"
+        f"element face {len(mesh.faces)}\nproperty list uchar uint vertex_indices\nend_header\n"
+    )
+    return head.encode() + mesh.vertices.astype("<f8").tobytes() + rows.tobytes()
 
 
 def as_scene(scene: Any) -> Scene:

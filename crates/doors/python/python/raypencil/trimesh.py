@@ -7,6 +7,7 @@ behind a ray's origin is told.
 
 from __future__ import annotations
 
+from copy import deepcopy
 from typing import Any, Literal, overload
 
 import numpy as np
@@ -28,17 +29,48 @@ _Points = NDArray[np.float64]
 class RayMeshIntersector:
     """Rays on a mesh.
 
+    A copy of a mesh by ``mesh.copy()`` has trimesh's own rays again, for trimesh makes it from nothing. ``copy.copy(mesh.ray)`` has the
+    same mesh as this one, ``mesh.ray.copy()`` and ``copy.deepcopy(mesh.ray)`` have a copy of it, whose ``ray`` they are.
+
     Args:
         mesh: a ``trimesh.Trimesh``, or anything with ``vertices`` (n, 3) and ``faces`` (m, 3). A mesh of trimesh may change:
             it is looked at again for each call.
+        scale_to_box: trimesh's argument for Embree, which changes nothing here: no mesh is too small or too large.
         with_: ``"referee"`` is exact; ``"tracer"`` is up to twice as fast (docs/evidence/speed.md) and rounds. It answers
             :meth:`intersects_first` and :meth:`intersects_any`; the others are exact in any case.
+        geometry: the mesh by the name that it has in ``trimesh.ray.ray_pyembree``.
+
+    Raises:
+        RaypencilError: no mesh is given, or two.
     """
 
-    def __init__(self, mesh: Any, *, with_: Caster = "referee") -> None:
-        self.mesh = mesh
+    def __init__(
+        self, mesh: Any = None, scale_to_box: bool = True, *, with_: Caster = "referee", geometry: Any = None
+    ) -> None:
+        if (mesh is None) == (geometry is None):
+            raise RaypencilError(f"{'no mesh is' if mesh is None else 'two meshes are'} given; expected mesh or geometry")
+        self.mesh = geometry if mesh is None else mesh
         self._with: Caster = with_
         self._kept: tuple[int, Mesh] | None = None
+
+    def copy(self) -> RayMeshIntersector:
+        """The same rays on a copy of the mesh. A mesh of trimesh has them as its ``ray``."""
+        # A mesh of raypencil never changes.
+        if isinstance(self.mesh, Mesh):
+            return RayMeshIntersector(self.mesh, with_=self._with)
+        mesh = self.mesh.copy() if hasattr(self.mesh, "copy") else deepcopy(self.mesh)
+        copied = RayMeshIntersector(mesh, with_=self._with)
+        if hasattr(mesh, "ray"):
+            mesh.ray = copied
+        return copied
+
+    def __copy__(self) -> RayMeshIntersector:
+        return RayMeshIntersector(self.mesh, with_=self._with)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> RayMeshIntersector:
+        copied = self.copy()
+        memo[id(self)] = copied
+        return copied
 
     def _mesh(self) -> Mesh:
         if isinstance(self.mesh, Mesh):

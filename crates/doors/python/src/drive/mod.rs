@@ -1,7 +1,7 @@
 //! A drive, frame by frame.
 //!
 //! ```text
-//! tee       the rover's own extraction of stripes, which also tells what it saw
+//! tee       the extraction of stripes, which also tells what it saw
 //! replay    a second rover that makes the same points and maps of it
 //! frame     a frame as arrays
 //! ```
@@ -23,11 +23,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use raypencil::Silent;
 use raypencil::drive::{
-    DriveExtras, DriveJob, DriveProgress, DriveRun, RecordContents, drive_document, drive_renderer,
+    DriveExtras, DriveJob, DriveProgress, DriveRun, RecordContents, StripeFile, drive_document, drive_renderer,
     drive_with, write_drive,
 };
 use raypencil::io::{DriveSetup, WaypointFrame};
-use raypencil::rover::RigExtraction;
+use raypencil::rover::{RigExtraction, StripeExtractor};
 
 use crate::failure::Failure;
 use crate::render::{contenders, renderer_words};
@@ -81,6 +81,8 @@ struct Wish {
     names: Vec<String>,
     switches: Vec<(String, String)>,
     output: Option<PathBuf>,
+    /// The folder of stripes in place of the rover's own, and whether it is the user's and is named.
+    stripes: Option<(PathBuf, bool)>,
 }
 
 impl Wish {
@@ -98,6 +100,9 @@ impl Wish {
         }
         if !self.record.is_empty() {
             words += &format!(" --record {}", self.record.join(","));
+        }
+        if let Some((folder, true)) = &self.stripes {
+            words += &format!(" --stripes {}", folder.display());
         }
         if self.names == ["scanline", "tracer"] {
             words += " --both";
@@ -165,7 +170,8 @@ fn finish(job: &DriveJob, run: &DriveRun, output: Option<&PathBuf>) -> Result<En
 impl DriveCore {
     #[new]
     #[pyo3(signature = (
-        scene, to, to_global, as_printed, rules, record, names, switches, images, output=None, on_stage=None
+        scene, to, to_global, as_printed, rules, record, names, switches, images, output=None, stripes=None,
+        on_stage=None
     ))]
     fn new(
         py: Python<'_>,
@@ -179,9 +185,10 @@ impl DriveCore {
         switches: Vec<(String, String)>,
         images: bool,
         output: Option<PathBuf>,
+        stripes: Option<(PathBuf, bool)>,
         on_stage: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let wish = Wish { to, to_global, as_printed, rules, record, names, switches, output };
+        let wish = Wish { to, to_global, as_printed, rules, record, names, switches, output, stripes };
         let scene = scene.clone();
         watched(py, on_stage, move |_| {
             let job = wish.job(&scene)?;
@@ -191,7 +198,10 @@ impl DriveCore {
             let (listener, seen) = sync_channel(AHEAD);
             let (taker, frames) = sync_channel(AHEAD);
             let plan = &job.plan;
-            let extraction = RigExtraction::new(plan.extraction, &plan.rig, &plan.sweep);
+            let extraction: Box<dyn StripeExtractor> = match &wish.stripes {
+                Some((folder, _)) => Box::new(StripeFile::read(folder)?),
+                None => Box::new(RigExtraction::new(plan.extraction, &plan.rig, &plan.sweep)),
+            };
             let tee = Tee::new(extraction, images, listener);
             let extras = DriveExtras {
                 extractor: Some(Arc::new(tee) as _),

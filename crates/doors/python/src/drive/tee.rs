@@ -1,11 +1,11 @@
-//! The rover's own extraction of stripes, which also tells what it saw.
+//! The extraction of stripes, which also tells what it saw.
 
 use std::collections::HashSet;
 use std::sync::mpsc::SyncSender;
 use std::sync::{Mutex, PoisonError};
 
 use raypencil::SceneError;
-use raypencil::rover::{CameraImage, Exposure, RigExtraction, StripeExtractor, Stripes};
+use raypencil::rover::{CameraImage, Exposure, StripeExtractor, Stripes};
 
 /// What was seen in one exposure.
 #[derive(Debug)]
@@ -19,10 +19,10 @@ pub(super) struct Seen {
 /// What tells the exposures of a frame apart: the step of a scan, and the lit beam.
 type Key = (Option<u32>, Option<usize>);
 
-/// The rover's own extraction.
+/// The rover's own extraction, or somebody's stripes.
 #[derive(Debug)]
 pub(super) struct Tee {
-    extraction: RigExtraction,
+    extraction: Box<dyn StripeExtractor>,
     keeps_images: bool,
     listener: SyncSender<Seen>,
     /// The frame, and its exposures that were told: with two renderers each comes twice, first that of the first.
@@ -30,7 +30,11 @@ pub(super) struct Tee {
 }
 
 impl Tee {
-    pub(super) fn new(extraction: RigExtraction, keeps_images: bool, listener: SyncSender<Seen>) -> Self {
+    pub(super) fn new(
+        extraction: Box<dyn StripeExtractor>,
+        keeps_images: bool,
+        listener: SyncSender<Seen>,
+    ) -> Self {
         Self { extraction, keeps_images, listener, told: Mutex::default() }
     }
 
