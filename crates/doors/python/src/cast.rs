@@ -28,6 +28,9 @@ type Counts = (u64, u64, u64);
 /// Of how many rays plain f64, intervals and exact arithmetic decided the first hit.
 type Decided = (u64, u64, u64);
 
+/// Arrays, counts, what decided if the referee was asked for first hits, and warnings.
+type Told<'py> = (Bound<'py, PyDict>, Counts, Option<Decided>, Vec<String>);
+
 /// What is asked.
 #[derive(Debug, Clone, Copy)]
 struct Asked {
@@ -66,7 +69,7 @@ pub(crate) fn cast<'py>(
     threads: usize,
     warn: bool,
     on_stage: Option<&Bound<'py, PyAny>>,
-) -> PyResult<(Bound<'py, PyDict>, Counts, Option<Decided>, Vec<String>)> {
+) -> PyResult<Told<'py>> {
     let failed = |failure: Failure| failure.into_exception(py);
     let set = rays_from(&rays, first).map_err(failed)?;
     drop(rays);

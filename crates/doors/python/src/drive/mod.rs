@@ -23,8 +23,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use raypencil::Silent;
 use raypencil::drive::{
-    DriveExtras, DriveJob, DriveProgress, DriveRun, RecordContents, StripeFile, drive_document, drive_renderer,
-    drive_with, write_drive,
+    DriveExtras, DriveJob, DriveProgress, DriveRun, RecordContents, StripeFile, drive_document,
+    drive_renderer, drive_with, write_drive,
 };
 use raypencil::io::{DriveSetup, WaypointFrame};
 use raypencil::rover::{RigExtraction, StripeExtractor};

@@ -69,6 +69,11 @@ fn one_ray_is_answered_on_the_screen_and_as_json() {
     }
     let json = screen(folder.path(), &["cast", &cube, ray, "--json", "--any"], 0);
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["decided"], serde_json::json!({ "filter": 1, "intervals": 0, "exact": 0 }));
+    // Through a diagonal: only exact arithmetic tells that.
+    let through = screen(folder.path(), &["cast", &cube, "--ray=-3,0.5,0.5,2,0,0", "--json"], 0);
+    let through: serde_json::Value = serde_json::from_str(&through).unwrap();
+    assert_eq!(through["decided"], serde_json::json!({ "filter": 0, "intervals": 0, "exact": 1 }));
     let first = &json["rays"][0]["first"];
     assert_eq!(
         (&first["face"], &first["t"], &json["rays"][0]["any"]),
