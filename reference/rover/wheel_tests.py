@@ -285,39 +285,76 @@ class WheelTests:
                 part = "rear_wheel" if name == "rear" else "front_wheel"
                 hides = exceeds_at_most(name, one, two, 0) and not by_measured(name, one, two, 0)
                 return Verdict("unknown", "may_hide" if hides else "near_limit", part, (float(qx), float(qy)), tie)
-        return self.belly(qx, qy, ux, uy, [wheel.highest.hub for wheel in wheels], tie)
+        return self.belly(qx, qy, ux, uy, wheels, tie)
 
     def lacking(self, reason, part, j, i, tie):
         return Verdict("unknown", reason, part, (float(self.grid_x[j, i]), float(self.grid_y[j, i])), tie)
 
-    def belly(self, qx, qy, ux, uy, hub, tie):
-        """The ground against the underside, which is parallel to the plane through the hubs."""
+    def belly(self, qx, qy, ux, uy, wheels, tie):
+        """The ground against the underside, which is parallel to the plane through the hubs: as high and as low as these may be."""
         v = self.vehicle
         length, track = v["wheelbase"], v["track"]
         cx, cy = qx - length / 2 * ux, qy - length / 2 * uy
-        along = (hub[0] + hub[1] - hub[2] - hub[3]) / (2 * length)
-        across = (hub[0] - hub[1] + hub[2] - hub[3]) / (2 * track)
-        below = (v["wheel_radius"] - v["clearance"]) * np.sqrt(1 + along ** 2 + across ** 2)
         ahead, aside = length / 2, max(0.0, (track - v["wheel_width"]) / 2)
         w = self.window(cx, cy, ahead, aside)
 
-        def over(x, y, z):
-            """Height above the underside; NaN outside of it."""
-            a, b = (x - cx) * ux + (y - cy) * uy, (y - cy) * ux - (x - cx) * uy
-            within = (np.abs(a) <= ahead + BORDER) & (np.abs(b) <= aside + BORDER)
-            return np.where(within, z - (np.mean(hub) - below + along * a + across * b), np.nan), within
+        def underside(by):
+            """Its height at a place and the variance of that, by these hubs; of a wheel that lacks one, by the highest."""
+            hubs = [getattr(wheel, by) or wheel.highest for wheel in wheels]
+            h = [hub.hub for hub in hubs]
+            along = (h[0] + h[1] - h[2] - h[3]) / (2 * length)
+            across = (h[0] - h[1] + h[2] - h[3]) / (2 * track)
+            below = (v["wheel_radius"] - v["clearance"]) * np.sqrt(1 + along ** 2 + across ** 2)
 
-        for x, y, z in ((self.x, self.y, self.z), self.top[:3]):
-            hit, _ = over(x[w], y[w], z[w])
-            tie |= bool((np.abs(hit) <= NEAR).any())
-            if (hit >= 0).any():
-                return Verdict("obstacle", "belly", near_tie=tie)
-        may, within = over(self.grid_x[w], self.grid_y[w], self.belly_top[w])
-        tie |= bool((np.abs(may) <= NEAR).any())
-        lacks = within & np.isnan(self.belly_top[w]) & ~self.measured[w]
-        wrong = np.argwhere((may >= 0) | lacks)
+            def at(a, b):
+                shares = [0.25 + front * a / (2 * length) + left * b / (2 * track)
+                          for front, left in ((1, 1), (1, -1), (-1, 1), (-1, -1))]
+                variance = sum(share ** 2 * hub.variance for share, hub in zip(shares, hubs))
+                return np.mean(h) - below + along * a + across * b, variance
+            return at
+
+        by_highest, by_measured, by_lowest = (underside(by) for by in ("highest", "measured", "lowest"))
+
+        def axes(x, y):
+            """Place ahead and to the left of the belly's middle, and whether it is under the belly."""
+            a, b = (x - cx) * ux + (y - cy) * uy, (y - cy) * ux - (x - cx) * uy
+            with np.errstate(invalid="ignore"):
+                return a, b, (np.abs(a) <= ahead + BORDER) & (np.abs(b) <= aside + BORDER)
+
+        def over(plane, x, y, z, variance, errors):
+            """Height above an underside with so many standard errors; NaN outside of it."""
+            a, b, within = axes(x, y)
+            height, own = plane(a, b)
+            return np.where(within, z + errors * np.sqrt(variance + own) - height, np.nan)
+
+        measured = [[values[w] for values in (self.x, self.y, self.z, self.variance)], [values[w] for values in self.top]]
+        obstacle, clear = -self.limits["obstacle_margin"], self.limits["clear_margin"]
+        near, hidden = np.zeros(measured[0][0].shape, bool), np.zeros(measured[0][0].shape, bool)
+        with np.errstate(invalid="ignore"):
+            for points in measured:
+                hit = over(by_highest, *points, obstacle)
+                tie |= bool((np.abs(hit) <= NEAR).any())
+                if (hit >= 0).any():
+                    return Verdict("obstacle", "belly", near_tie=tie)
+            for points in measured:
+                may = over(by_lowest, *points, clear)
+                tie |= bool((np.abs(may) <= NEAR).any())
+                # The cell's own point is asked first, then its highest.
+                new = (may >= 0) & ~near
+                hides = (over(by_lowest, *points, 0) >= 0) & ~(over(by_measured, *points, 0) >= 0)
+                hidden, near = hidden | (new & hides), near | new
+            a, b, within = axes(self.grid_x[w], self.grid_y[w])
+            top = self.belly_top[w]
+            may = np.where(within, top - by_lowest(a, b)[0], np.nan)
+            tie |= bool((np.abs(may) <= NEAR).any())
+            lacks = within & np.isnan(top) & ~self.measured[w]
+            wrong = np.argwhere(near | (may >= 0) | lacks)
         if len(wrong):
             j, i = wrong[0]
+            if near[j, i]:
+                own = measured[0] if over(by_lowest, *measured[0], clear)[j, i] >= 0 else measured[1]
+                place = (float(own[0][j, i]), float(own[1][j, i]))
+                return Verdict("unknown", "may_hide" if hidden[j, i] else "near_limit", "belly", place, tie)
             reason = "not_measured" if lacks[j, i] else "may_hide"
             return self.lacking(reason, "belly", j + w[0].start, i + w[1].start, tie)
         return Verdict(CLEAR, near_tie=tie)

@@ -42,7 +42,7 @@ impl Rates {
     pub(crate) const PROBE: Self = Self { command: "probe", base: BASE, face: 260, pixel: 120, pencil: 40 };
     /// With two renderers, and the maps of some hundred frames.
     pub(crate) const DRIVE: Self =
-        Self { command: "drive", base: 64 << 20, face: 600, pixel: 180, pencil: 1000 };
+        Self { command: "drive", base: 208 << 20, face: 600, pixel: 180, pencil: 1000 };
 }
 
 /// Bytes that `cast` takes for each ray, and for each face.

@@ -1,6 +1,7 @@
 //! The upper bound of a drive: the elevation map that a rover with exact eyes would have of the ground that its stripes swept.
 //!
-//! It holds the true ground of each cell that a beam lit and the camera saw, with all points between the stripes, and nothing else. The
+//! It holds the true ground of each cell that a beam lit and the camera saw, with all points between the stripes, and nothing else. Its
+//! own cells are finer than the rover's, so that it is the ground and not a picture of it. The
 //! rules of map and obstacles are the drive's own, and the vehicle knows where it stands. What such a rover does not find
 //! either, no better image and no better inertial sensor would find: the stripes did not come there, or the rules do not see
 //! it. What it finds and the rover does not is lost in between.
@@ -8,7 +9,7 @@
 use std::collections::BTreeSet;
 
 use glam::{DVec2, DVec3};
-use raypencil_rover::{DrivePlan, ElevationMap, ElevationSource, GridPoint, MapPoint, Sight};
+use raypencil_rover::{DrivePlan, ElevationMap, ElevationSource, GridPoint, MapPoint, MapSize, Sight};
 use raypencil_scene::{RenderOutput, Scene};
 use raypencil_terrain::HeightIndex;
 
@@ -17,16 +18,28 @@ use crate::swept_ground::{Swept, SweptGround};
 /// Standard error of an exact point, metres: none.
 const EXACT: f64 = 0.0;
 
-/// Points of the true ground along a side of a cell.
-const POINTS_A_SIDE: i32 = 4;
+/// Cells of this map along a side of one of the rover's: 2.5 cm by default. A cell keeps one place of the ground and its highest
+/// point, so that in cells of 10 cm a wheel on rough ground stands up to 2 cm too high or too low, however exact the points.
+const CELLS_A_SIDE: u32 = 4;
+
+/// Maximum number of grid points along a side of this map: 140 MB in all.
+const MAX_POINTS: u32 = 801;
+
+/// Size of the map of exact points beside a rover's map: finer cells on the same ground.
+fn fine(size: MapSize) -> MapSize {
+    let cells = ((MAX_POINTS - 1) / (size.points - 1)).clamp(1, CELLS_A_SIDE);
+    MapSize { spacing: size.spacing / f64::from(cells), points: cells * (size.points - 1) + 1 }
+}
 
 /// Map of the exact points of a drive.
 #[derive(Debug, Clone)]
 pub(crate) struct ExactMap {
     map: ElevationMap,
+    /// The cells of the rover's map: a map without elevations, the grid alone.
+    cells: ElevationMap,
     /// Points of the exposures since the last frame.
     new: Vec<MapPoint>,
-    /// Cells whose true ground is in the map.
+    /// Cells of the rover's map whose true ground is in the map.
     filled: BTreeSet<GridPoint>,
     /// Whether the map is to be cleared first: a scan has begun.
     clears: bool,
@@ -35,8 +48,9 @@ pub(crate) struct ExactMap {
 impl ExactMap {
     /// Nothing is swept yet.
     pub(crate) fn new(plan: &DrivePlan) -> Self {
-        let map = ElevationMap::with_rules(plan.map, plan.route.start, plan.map_rules);
-        Self { map, new: Vec::new(), filled: BTreeSet::new(), clears: false }
+        let map = ElevationMap::with_rules(fine(plan.map), plan.route.start, plan.map_rules);
+        let cells = ElevationMap::new(plan.map, plan.route.start);
+        Self { map, cells, new: Vec::new(), filled: BTreeSet::new(), clears: false }
     }
 
     /// Forgets everything before the next points, as the rover's map does before a scan.
@@ -71,14 +85,18 @@ impl ExactMap {
             self.filled.clear();
         }
         self.map.recentre(place);
+        self.cells.recentre(place);
         self.map.stand_as(rover);
         let by_proximity = |point: &GridPoint| rover.source(*point) == ElevationSource::Proximity;
-        for point in rover.points().filter(by_proximity) {
-            let place = rover.place(point);
-            if self.map.source(point) == ElevationSource::Unknown
-                && let Some(elevation) = ground.height_at(place.x, place.y)
-            {
-                self.map.set_proximity(point, elevation);
+        if rover.points().any(|point| by_proximity(&point)) {
+            for point in self.map.points() {
+                let place = self.map.place(point);
+                if self.map.source(point) == ElevationSource::Unknown
+                    && by_proximity(&rover.nearest(place))
+                    && let Some(elevation) = ground.height_at(place.x, place.y)
+                {
+                    self.map.set_proximity(point, elevation);
+                }
             }
         }
         self.map.insert(std::mem::take(&mut self.new));
@@ -86,23 +104,24 @@ impl ExactMap {
 
     /// Adds the true ground of all cells that were lit and seen so far.
     pub(crate) fn fill(&mut self, swept: &SweptGround, ground: &HeightIndex) {
-        let map = &self.map;
-        self.filled.retain(|point| map.contains(*point));
+        let Self { map, cells, filled, .. } = self;
+        filled.retain(|cell| cells.contains(*cell));
+        let true_point = |place: DVec2| Some(place.extend(ground.height_at(place.x, place.y)?));
+        // Fine cells from the middle of a wide one to its border.
+        let half = (0.5 * cells.size().spacing / map.size().spacing).ceil() as i64;
         let mut points = Vec::new();
-        for at in map.points() {
-            let place = map.place(at);
-            let Some(z) = ground.height_at(place.x, place.y) else { continue };
-            if self.filled.contains(&at) || swept.at(place.extend(z)) != Swept::Seen {
+        for cell in cells.points() {
+            let is_seen =
+                || true_point(cells.place(cell)).is_some_and(|point| swept.at(point) == Swept::Seen);
+            if filled.contains(&cell) || !is_seen() {
                 continue;
             }
-            self.filled.insert(at);
-            let share = |n: i32| ((f64::from(n) + 0.5) / f64::from(POINTS_A_SIDE) - 0.5) * map.size().spacing;
-            for (i, j) in (0..POINTS_A_SIDE).flat_map(|j| (0..POINTS_A_SIDE).map(move |i| (i, j))) {
-                let place = place + DVec2::new(share(i), share(j));
-                if let Some(z) = ground.height_at(place.x, place.y) {
-                    points.push(MapPoint { point: place.extend(z), standard_error: EXACT, sight: None });
-                }
-            }
+            filled.insert(cell);
+            let middle = map.nearest(cells.place(cell));
+            let within = (-half..=half).flat_map(|j| (-half..=half).map(move |i| (i, j)));
+            let places = within.map(|(i, j)| map.place(GridPoint { i: middle.i + i, j: middle.j + j }));
+            let exact = places.filter(|place| cells.nearest(*place) == cell).filter_map(true_point);
+            points.extend(exact.map(|point| MapPoint { point, standard_error: EXACT, sight: None }));
         }
         self.map.insert(points);
     }

@@ -232,7 +232,7 @@ pub fn drive_with(
                 let firsts = first_obstacles(&faces, &job.plan, &stance);
                 let DrivePlan { vehicle, rules, grid, .. } = &job.plan;
                 let bound = ObstacleMap::extract(exact, vehicle, rules, grid, &stance);
-                upper_bound.add(&bound.sectors, exact, &ground, &job.plan, &stance, &firsts);
+                upper_bound.add(&bound.sectors, first.map(), &ground, &job.plan, &stance, &firsts);
                 truth.add(&map.sectors, first.map(), &ground, &job.plan, &stance, &firsts)
             }
             _ => Vec::new(),

@@ -103,6 +103,22 @@ pub(crate) struct Cell {
     pub stood: Option<f64>,
 }
 
+/// What is known beyond the map: nothing.
+static BEYOND: Cell = Cell {
+    elevation: 0.0,
+    source: ElevationSource::Unknown,
+    update: 0,
+    place: DVec2::ZERO,
+    variance: 0.0,
+    odometer: 0.0,
+    frame: 0,
+    corrected: 0.0,
+    top: None,
+    sight: None,
+    measured: None,
+    stood: None,
+};
+
 /// Difference between new measurements and all that were measured before in the same cells: how far a new elevation
 /// lies outside the range of the earlier ones.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -213,8 +229,8 @@ impl ElevationMap {
         (point.j.rem_euclid(points) * points + point.i.rem_euclid(points)) as usize
     }
 
-    pub(crate) fn cell(&self, point: GridPoint) -> Cell {
-        if self.contains(point) { self.cells[self.index(point)] } else { Cell::default() }
+    pub(crate) fn cell(&self, point: GridPoint) -> &Cell {
+        if self.contains(point) { &self.cells[self.index(point)] } else { &BEYOND }
     }
 
     /// Source of a grid point's elevation; unknown beyond the map.
@@ -249,10 +265,13 @@ impl ElevationMap {
     }
 
     /// Takes over from another map the ground on which its vehicle stood, by the rule
-    /// [`StartRule::Circle`](crate::StartRule): what that rule invents, and no elevation.
+    /// [`StartRule::Circle`](crate::StartRule): what that rule invents, and no elevation. The other map may have wider cells.
     pub fn stand_as(&mut self, other: &Self) {
-        for point in other.points() {
-            if let Some(elevation) = other.cell(point).stood {
+        if other.cells.iter().all(|cell| cell.stood.is_none()) {
+            return;
+        }
+        for point in self.points() {
+            if let Some(elevation) = other.cell(other.nearest(self.place(point))).stood {
                 self.stand_over(point, elevation);
             }
         }

@@ -77,6 +77,51 @@ impl WheelOnMap {
     }
 }
 
+/// The plane through the hubs of four wheels, and the underside of the body that hangs on them.
+struct HubPlane {
+    /// Height of its middle, global, metres.
+    middle: f64,
+    /// Rise along and across, over distance.
+    slopes: DVec2,
+    /// Of the middle of the hubs' plane above the underside, along z, metres.
+    drop: f64,
+    /// Variances of the hubs' heights, square metres: front left, front right, rear left, rear right.
+    variances: [f64; 4],
+    wheelbase: f64,
+    track: f64,
+}
+
+impl HubPlane {
+    /// The plane of least squares through the corners of a rectangle.
+    fn through([a, b, c, d]: [Hub; 4], vehicle: &Vehicle) -> Self {
+        let Vehicle { wheelbase, track, wheel_radius, clearance, .. } = *vehicle;
+        let along = (a.height + b.height - c.height - d.height) / (2.0 * wheelbase);
+        let across = (a.height - b.height + c.height - d.height) / (2.0 * track);
+        // The underside lies `wheel_radius - clearance` below the hubs, measured square to their plane.
+        let drop = (wheel_radius - clearance) * (1.0 + along * along + across * across).sqrt();
+        Self {
+            middle: (a.height + b.height + c.height + d.height) * 0.25,
+            slopes: DVec2::new(along, across),
+            drop,
+            variances: [a, b, c, d].map(|hub| hub.variance),
+            wheelbase,
+            track,
+        }
+    }
+
+    /// Height of the underside, global, metres, at a place forward and left of the middle.
+    fn underside(&self, at: DVec2) -> f64 {
+        self.middle - self.drop + self.slopes.dot(at)
+    }
+
+    /// Variance of that height, square metres: each hub's, times the square of its share in it.
+    fn variance(&self, at: DVec2) -> f64 {
+        let (along, across) = (at.x / (2.0 * self.wheelbase), at.y / (2.0 * self.track));
+        let shares = [along + across, along - across, across - along, -along - across];
+        shares.iter().zip(self.variances).map(|(share, v)| (0.25 + share) * (0.25 + share) * v).sum()
+    }
+}
+
 /// A rectangle on the map that a part of the vehicle stands over.
 struct Rectangle {
     middle: DVec2,
@@ -126,14 +171,21 @@ impl Rectangle {
         shares.into_iter().flatten().filter(move |_| inside).map(move |share| a + (b - a) * share)
     }
 
-    /// Grid points whose cells the rectangle may touch.
-    fn grid_points(&self, map: &ElevationMap) -> impl Iterator<Item = GridPoint> + use<> {
+    /// Grid points whose cells the rectangle may touch, or a line from their point to that of a neighbour.
+    fn grid_points<'a>(&'a self, map: &'a ElevationMap) -> impl Iterator<Item = GridPoint> + use<'a> {
         let left = self.forward.perp();
         let reach = self.forward.abs() * self.half_length + left.abs() * self.half_width;
         // A measured point lies within half a cell of its grid point, and a line may come from the cell beside.
         let reach = reach + DVec2::splat(1.5 * map.size().spacing);
         let (low, high) = (map.nearest(self.middle - reach), map.nearest(self.middle + reach));
-        (low.j..=high.j).flat_map(move |j| (low.i..=high.i).map(move |i| GridPoint { i, j }))
+        let points = (low.j..=high.j).flat_map(move |j| (low.i..=high.i).map(move |i| GridPoint { i, j }));
+        // A neighbour is up to a diagonal away, and its point half a diagonal farther.
+        let margin = 1.5 * std::f64::consts::SQRT_2 * map.size().spacing + BORDER_ROUNDING_M;
+        points.filter(move |point| {
+            let from = map.place(*point) - self.middle;
+            from.dot(self.forward).abs() <= self.half_length + margin
+                && from.dot(left).abs() <= self.half_width + margin
+        })
     }
 }
 
@@ -152,7 +204,7 @@ impl TraversabilityRules {
         front: DVec2,
         forward: DVec2,
     ) -> Traversability {
-        let Vehicle { wheelbase, track, wheel_radius, wheel_width, clearance, .. } = *vehicle;
+        let Vehicle { wheelbase, track, wheel_radius, wheel_width, .. } = *vehicle;
         let (left, map) = (forward.perp(), shadows.map());
         let ground = Ground { rules: self, map, shadows };
         let wheel = |part, behind: f64, aside: f64| {
@@ -215,48 +267,58 @@ impl TraversabilityRules {
             }
         }
 
-        let hubs: Vec<DVec3> = wheels()
-            .zip([(0.0, 0.5), (0.0, -0.5), (wheelbase, 0.5), (wheelbase, -0.5)])
-            .filter_map(|(wheel, (behind, side))| {
-                let place = front - forward * behind + left * (side * track);
-                Some(place.extend(wheel.highest?.height))
-            })
-            .collect();
-        let [a, b, c, d] = hubs[..] else {
+        // Through the wheels where they may stand highest, as measured, and where they may stand lowest. A wheel over bridged
+        // ground alone has its highest place only.
+        let planes = |part: fn(&WheelOnMap) -> Option<Hub>| -> Option<HubPlane> {
+            let hubs = [front_left, front_right, rear_left, rear_right].map(part);
+            let [Some(a), Some(b), Some(c), Some(d)] = hubs else { return None };
+            Some(HubPlane::through([a, b, c, d], vehicle))
+        };
+        let as_measured = planes(|wheel| wheel.measured.or(wheel.highest));
+        let at_least = planes(|wheel| wheel.lowest.or(wheel.highest));
+        let (Some(highest), Some(measured), Some(lowest)) =
+            (planes(|wheel| wheel.highest), as_measured, at_least)
+        else {
             return Traversability::Unknown(Missing {
                 part: VehiclePart::FrontWheel,
                 place: front,
                 reason: MissingReason::NotMeasured,
             });
         };
-        // The plane of least squares through the corners of a rectangle.
-        let middle = (a + b + c + d) * 0.25;
-        let along = (a.z + b.z - c.z - d.z) / (2.0 * wheelbase);
-        let across = (a.z - b.z + c.z - d.z) / (2.0 * track);
-        // The underside lies `wheel_radius - clearance` below the hubs, measured square to their plane.
-        let drop = (wheel_radius - clearance) * (1.0 + along * along + across * across).sqrt();
         let belly = Rectangle {
-            middle: middle.truncate(),
+            middle: front - forward * (0.5 * wheelbase),
             forward,
             half_length: 0.5 * wheelbase,
             half_width: 0.5 * (track - wheel_width).max(0.0),
         };
-        let underside = |at: DVec2| middle.z - drop + along * at.x + across * at.y;
         let mut missing = None;
         for point in belly.grid_points(map) {
             match ground.under_belly(point) {
-                Known::Measured(sample, _) => {
+                Known::Measured(sample, variance) => {
                     // Points within the rectangle are enough: the belly is far wider than a cell.
-                    let top = map.cell(point).top.map(|top| top.point);
-                    let hits = |sample: DVec3| {
-                        belly.within(sample.truncate()).is_some_and(|at| sample.z >= underside(at))
-                    };
-                    if hits(sample) || top.is_some_and(hits) {
-                        return Traversability::Obstacle(TraversabilityTest::Belly);
+                    let top = map.cell(point).top.map(|top| (top.point, map.top_variance(&top)));
+                    for (sample, variance) in [Some((sample, variance)), top].into_iter().flatten() {
+                        let Some(at) = belly.within(sample.truncate()) else { continue };
+                        let reaches = |plane: &HubPlane, errors: f64| {
+                            let error = (variance + plane.variance(at)).sqrt();
+                            sample.z + errors * error >= plane.underside(at)
+                        };
+                        // The belly hangs on the wheels: an obstacle is higher than it can hang, and what is clear is lower than
+                        // it may hang.
+                        if reaches(&highest, -self.margins.obstacle) {
+                            return Traversability::Obstacle(TraversabilityTest::Belly);
+                        }
+                        if missing.is_none() && reaches(&lowest, self.margins.clear) {
+                            let by_gaps = reaches(&lowest, 0.0) && !reaches(&measured, 0.0);
+                            let reason =
+                                if by_gaps { MissingReason::MayHide } else { MissingReason::NearLimit };
+                            let (part, place) = (VehiclePart::Belly, sample.truncate());
+                            missing = Some(Missing { part, place, reason });
+                        }
                     }
                 }
                 Known::Stood(top) | Known::AtMost(top) => {
-                    if belly.within(top.truncate()).is_some_and(|at| top.z >= underside(at)) {
+                    if belly.within(top.truncate()).is_some_and(|at| top.z >= lowest.underside(at)) {
                         let (part, place) = (VehiclePart::Belly, top.truncate());
                         missing = missing.or(Some(Missing { part, place, reason: MissingReason::MayHide }));
                     }
@@ -334,17 +396,32 @@ impl Ground<'_> {
                                 }
                             }
                         };
+                        // A line below the rim of all hubs so far carries none of them.
+                        let lifts = |kept: &Option<Hub>, top: f64| {
+                            kept.is_none_or(|kept| top + radius > kept.height - BORDER_ROUNDING_M)
+                        };
+                        let top = sample.z.max(other.z);
                         let WheelOnMap { measured, supported, lowest, highest, .. } = &mut wheel;
-                        rest_on_line(sample, other, &mut [measured, supported, highest]);
+                        if [&measured, &supported, &highest].into_iter().any(|kept| lifts(kept, top)) {
+                            rest_on_line(sample, other, &mut [measured, supported, highest]);
+                        }
                         // Or it bends down, and the wheel stands lower.
-                        let bend = bend_down(self.map, point, beside, (i, j)).unwrap_or(other);
-                        rest_on_line(sample, bend, &mut [lowest]);
-                        rest_on_line(bend, other, &mut [lowest]);
-                        // Or up, and the wheel may stand higher.
-                        if let Some(bend) = bend_up(self.map, point, beside, (i, j)) {
-                            for end in [point, beside].into_iter().filter_map(|at| top_of(self.map, at)) {
-                                rest_on_line(end, bend, &mut [highest]);
-                            }
+                        if lifts(lowest, top) {
+                            let bend = bend_down(self.map, point, beside, (i, j)).unwrap_or(other);
+                            rest_on_line(sample, bend, &mut [lowest]);
+                            rest_on_line(bend, other, &mut [lowest]);
+                        }
+                        // Or up, and the wheel may stand higher: at most by 45 degrees.
+                        let (Some(near), Some(far)) = (top_of(self.map, point), top_of(self.map, beside))
+                        else {
+                            continue;
+                        };
+                        let top = near.z.max(far.z) + (far - near).truncate().length();
+                        if lifts(highest, top)
+                            && let Some(bend) = bend_up(self.map, point, beside, (i, j))
+                        {
+                            rest_on_line(near, bend, &mut [highest]);
+                            rest_on_line(far, bend, &mut [highest]);
                         }
                     }
                 }
@@ -380,7 +457,7 @@ impl Ground<'_> {
     fn variance(&self, point: GridPoint) -> f64 {
         let cell = self.map.cell(point);
         match cell.source {
-            ElevationSource::Measured => cell.variance + self.map.ageing_variance(&cell),
+            ElevationSource::Measured => cell.variance + self.map.ageing_variance(cell),
             _ => 0.0,
         }
     }

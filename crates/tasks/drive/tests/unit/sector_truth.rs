@@ -159,15 +159,46 @@ fn exact_eyes_know_the_true_ground_of_what_was_swept_and_nothing_else() {
     let mut exact = ExactMap::new(&plan);
     exact.fill(&swept, &heights);
     let at = |x: f64| exact.map().sample(exact.map().nearest(DVec2::new(x, 0.0)));
-    // The mean of a cell's points is its middle, and cells beside count as seen with it; those beside these are guesses.
-    assert!((at(4.0).unwrap() - DVec3::new(4.0, 0.0, 0.75)).length() < 1e-12);
-    assert_eq!((at(4.1).map(|sample| sample.z), at(3.7), at(4.3)), (Some(0.75), None, None));
+    // A cell of the rover has 4 by 4 fine ones, each with the ground at its own place. Cells beside count as seen with it; those
+    // beside these are guesses.
+    for x in [3.95, 3.975, 4.0, 4.1] {
+        assert!((at(x).unwrap() - DVec3::new(x, 0.0, 0.75)).length() < 1e-12, "{x}");
+    }
+    assert_eq!((at(4.2), at(3.7), at(4.3)), (None, None, None));
     // A scan forgets it, and what was swept before is not added again.
     swept.clear();
     exact.clear();
     exact.end_frame(&ElevationMap::new(plan.map, DVec2::ZERO), &heights, DVec2::ZERO);
     exact.fill(&swept, &heights);
     assert!(exact.map().points().all(|point| exact.map().elevation(point).is_none()));
+}
+
+#[test]
+fn exact_eyes_see_what_is_narrower_than_a_cell_of_the_rover() {
+    // A ridge of 0.36 m along the way, with a top from y = 0.62 to 0.65 m, just under the left wheels of a vehicle that drives along x:
+    // their width ends at 0.625 m. The limit across is 0.35 m. In cells of 10 cm the highest of points 2.5 cm apart lies at 0.6375 m, beside
+    // the wheel, and the straight line up to it is 0.327 m high at the wheel's side.
+    let profile = [(-9.0, 0.0), (0.6, 0.0), (0.62, 0.36), (0.65, 0.36), (0.67, 0.0), (9.0, 0.0)];
+    let vertices: Vec<DVec3> =
+        profile.iter().flat_map(|&(y, z)| [DVec3::new(-9.0, y, z), DVec3::new(9.0, y, z)]).collect();
+    let faces = (0..5).flat_map(|i| [[2 * i, 2 * i + 1, 2 * i + 3], [2 * i, 2 * i + 3, 2 * i + 2]]).collect();
+    let (mesh, plan) = (mesh(&vertices, faces), plan());
+    let (faces, heights) = (GroundFaces::new(&mesh), HeightIndex::new(&mesh));
+    let mut swept = SweptGround::new(plan.map, DVec2::ZERO);
+    swept.recentre(DVec2::ZERO, &heights);
+    for (i, j) in (-40..=60).flat_map(|i| (-60..=60).map(move |j| (i, j))) {
+        let place = DVec2::new(0.1 * f64::from(i), 0.025 * f64::from(j));
+        swept.see(place.extend(heights.height_at(place.x, place.y).unwrap()));
+    }
+    let mut exact = ExactMap::new(&plan);
+    exact.fill(&swept, &heights);
+    let pose = Attitude::default().at(DVec3::ZERO);
+    let firsts = first_obstacles(&faces, &plan, &pose);
+    let DrivePlan { vehicle, rules, grid, .. } = &plan;
+    let bound = raypencil_rover::ObstacleMap::extract(exact.map(), vehicle, rules, grid, &pose);
+    let First::Obstacle { radius, .. } = firsts[0] else { panic!("the left wheels stand on the ridge") };
+    assert_eq!((radius, bound.sectors[0].label), (grid.first, Label::Obstacle));
+    assert_eq!(bound.sectors[0].radius, radius);
 }
 
 #[test]

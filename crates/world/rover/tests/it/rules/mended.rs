@@ -222,8 +222,8 @@ fn wheels_and_belly_meet_what_no_point_meets() {
     let rock = measured(|i, j| Some(if (i, j) == (4, 2) { 0.5 } else { 0.0 }));
     assert_eq!(judge(&printed, &rock), Traversability::Clear);
     assert_eq!(judge(&mended, &rock), Traversability::Obstacle(TraversabilityTest::Belly));
-    // One of 0.34 m passes under it.
-    let low = measured(|i, j| Some(if (i, j) == (4, 2) { 0.34 } else { 0.0 }));
+    // One of 0.32 m passes under it.
+    let low = measured(|i, j| Some(if (i, j) == (4, 2) { 0.32 } else { 0.0 }));
     assert_eq!(judge(&mended, &low), Traversability::Clear);
     // A stone of 0.4 m one cell before the left front wheel's centre, within its rim: the contact is at the stone, 0.4 m
     // above that of the right wheel, 1 m and a little away.
@@ -234,6 +234,51 @@ fn wheels_and_belly_meet_what_no_point_meets() {
     // there.
     let beside = measured(|i, j| Some(if (i, j) == (11, 7) { 0.4 } else { 0.0 }));
     assert_eq!(judge(&mended, &beside), Traversability::Clear);
+}
+
+#[test]
+fn a_rock_under_the_belly_is_unknown_within_its_errors() {
+    // All points have a standard error of 1 cm. The underside is at 0.35 m. Over (0.4, 0.2), 0.2 m left of its middle, a left
+    // wheel has a share of 1/4 + 0.2 / 2 = 0.35 in its height and a right one of 0.15: the standard error is
+    // sqrt(2 (0.35^2 + 0.15^2)) = 0.539 cm, with that of the rock 1.136 cm. So a rock is no obstacle below 0.35 - 0.0227 m and
+    // one from 0.35 + 0.0057 m on.
+    let rules = TraversabilityRules::for_vehicle(&Vehicle::default());
+    let rock =
+        |height: f64| judge(&rules, &measured(|i, j| Some(if (i, j) == (4, 2) { height } else { 0.0 })));
+    assert_eq!(rock(0.3270), Traversability::Clear);
+    for height in [0.3276, 0.3554] {
+        let Traversability::Unknown(missing) = rock(height) else { panic!("{height}: {:?}", rock(height)) };
+        assert_eq!((missing.part, missing.reason), (VehiclePart::Belly, MissingReason::NearLimit));
+        assert!((missing.place - DVec2::new(0.4, 0.2)).length() < 1e-9);
+    }
+    assert_eq!(rock(0.3560), Traversability::Obstacle(TraversabilityTest::Belly));
+}
+
+#[test]
+fn the_belly_is_not_held_up_by_what_may_stand_under_a_wheel() {
+    // Under the middle of the left front wheel one cell is not measured. The ground behind it was seen over it by a line of 1.5:
+    // up to 1.5 (0.1 + 0.1) = 0.3 m may stand there, and the wheel on it. The underside over the rock would then be at
+    // 0.35 + 0.35 * 0.3 = 0.455 m. But the gap may be empty: then it is at 0.35 m.
+    let rules = TraversabilityRules::for_vehicle(&Vehicle::default());
+    let judged = |rock: f64| {
+        let mut map = map_with(MapRules::MENDED);
+        let sight = Some(Sight { towards: DVec2::NEG_X, slope: 1.5 });
+        let points: Vec<MapPoint> = map
+            .points()
+            .filter(|point| (point.i, point.j) != (10, 5))
+            .map(|point| {
+                let z = if (point.i, point.j) == (4, 2) { rock } else { 0.0 };
+                MapPoint { point: map.place(point).extend(z), standard_error: 0.001, sight }
+            })
+            .collect();
+        map.insert(points);
+        judge(&rules, &map)
+    };
+    assert_eq!(judged(0.34), Traversability::Clear);
+    let Traversability::Unknown(missing) = judged(0.4) else { panic!("{:?}", judged(0.4)) };
+    assert_eq!((missing.part, missing.reason), (VehiclePart::Belly, MissingReason::NearLimit));
+    // Higher than the underside can be: an obstacle whatever stands there.
+    assert_eq!(judged(0.46), Traversability::Obstacle(TraversabilityTest::Belly));
 }
 
 #[test]
