@@ -46,11 +46,13 @@ designs:
         --chart truth.found_share,beam.0.pitch_down_deg,terrain.generate.preset \
         --chart truth.upper_bound.found_share,beam.0.pitch_down_deg,terrain.generate.preset
 
-# The rover with a scan on ten grounds of each kind, without noise: the table of docs/evidence/results.md; goes on where it was interrupted
+# The rover with a scan on ten grounds of each kind, without noise, with that of the camera, and with that of the sensors, and exact eyes
+# beside each: out/seeds/seeds.md. 180 drives, an hour and a half on two cores with nothing beside it; goes on where it was interrupted
 seeds:
-    cargo run --release --bin raypencil -- sweep data/designs/rover.toml \
+    cargo run --release --bin raypencil -- sweep data/designs/rover.toml --list data/designs/noise.csv \
         --set terrain.generate.preset=smooth,viking1,pathfinder,crater_field,crevassed,worst --set terrain.generate.seed=1:10:1 \
-        --set drive.scans=true --set drive.scan_steps=26 --set drive.sensor=ideal --do drive -o out/seeds
+        --set drive.scans=true --set drive.scan_steps=26 --do drive -o out/seeds
+    python3 reference/rover/seeds.py out/seeds/table.csv -o out/seeds/seeds.md
 
 # Thickness, power, noise and pitch, one at a time on all presets, ten seeds each: days; no page shows it yet
 designs-wide:
