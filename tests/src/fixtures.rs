@@ -139,6 +139,7 @@ pub fn with_candidate() -> Validation {
         declared: Default::default(),
         recorded,
         images: vec![image],
+        ray_sets: vec![],
         radiance: vec![radiance],
     };
     validation.evaluate(vec![candidate], &Silent);

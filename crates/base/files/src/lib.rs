@@ -84,8 +84,8 @@ mod zarr;
 
 pub use atomic::{ask_place, write_atomically};
 pub use channels::{
-    Channel, Channels, Declared, DeclaredChannel, Used, add_ray_sets, read_channels, read_channels_as,
-    read_listed_channels,
+    Channel, Channels, Declared, DeclaredChannel, Used, add_ray_sets, has_maps, has_ray_sets, is_ray_set,
+    read_channels, read_channels_as, read_listed_channels,
 };
 pub use disk::{TemporaryFolder, create_dir_all, remove_dir, remove_file};
 pub use error::{Fault, FileError, Problem, shortened};

@@ -48,7 +48,7 @@ mod table;
 mod text;
 mod version;
 
-pub use axes::{TICK_LENGTH_PX, axis_from_offset, draw_axes};
+pub use axes::{TICK_LENGTH_PX, apart_in_row, axis_from_offset, draw_axes, widest};
 pub use colour::Colour;
 pub use defect_list::{DefectGroup, DefectLine, defect_list};
 pub use document::{Block, Column, Count, Document, Grid, Outcome, Room, markdown_code, markdown_text};
@@ -56,6 +56,7 @@ pub use drawing::{Anchor, Drawing, INK, LETTERS, Mark, SOFT};
 pub use junit::{JunitCase, JunitReport, JunitSuite};
 pub use maps::{MapPair, SensorPlots};
 pub use page::{PAGE_END, page_head};
+pub use paint::text_width;
 pub use picture::{ColourMap, Picture, Reduction};
 pub use plot::{
     Bar, MAX_PICTURE_CELLS, MAX_PICTURE_SIDE, Plot, Ring, cells_axis, max_side_of_pictures, reduced_to,

@@ -18,6 +18,12 @@ const PIXELS_PER_PAGE_PIXEL: u32 = 2;
 
 static FONT: LazyLock<Letters> = LazyLock::new(|| Letters::new(epaint_default_fonts::UBUNTU_LIGHT));
 
+/// Width of a line of text on a page, pixels, in the font of the PNG.
+pub fn text_width(text: &str) -> f64 {
+    let (_, width) = FONT.line(text, LETTERS as f32);
+    width.into()
+}
+
 impl Drawing {
     /// The page as PNG, two of its pixels for each of the page along either side.
     pub fn png(&self) -> Vec<u8> {

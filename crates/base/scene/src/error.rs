@@ -17,7 +17,48 @@ pub struct SceneError {
 impl SceneError {
     /// Names a `field`, the `value` it holds and what was `expected` instead.
     pub fn new(field: impl Into<String>, value: impl ToString, expected: impl Into<String>) -> Self {
-        Self { field: field.into(), value: value.to_string(), expected: expected.into() }
+        Self { field: field.into(), value: readable(&value.to_string()), expected: expected.into() }
+    }
+}
+
+/// Digits of a number that people can read at a glance.
+const MAX_DIGITS: usize = 24;
+
+/// A value with its huge and its tiny numbers as powers of ten: 1e300 would be 300 zeros.
+fn readable(value: &str) -> String {
+    let is_digit = |c: char| c.is_ascii_digit() || c == '.';
+    let mut text = String::new();
+    let mut rest = value;
+    while let Some(start) = rest.find(is_digit) {
+        let length = rest[start..].find(|c| !is_digit(c)).unwrap_or(rest.len() - start);
+        let (before, number) = (&rest[..start], &rest[start..start + length]);
+        text.push_str(before);
+        match number.parse::<f64>() {
+            Ok(parsed) if length > MAX_DIGITS && parsed.is_finite() => text.push_str(&format!("{parsed:e}")),
+            _ => text.push_str(number),
+        }
+        rest = &rest[start + length..];
+    }
+    text + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_many_digits_are_powers_of_ten() {
+        let shown = |value: [f64; 2]| SceneError::new("at", format!("{value:?}"), "less").to_string();
+        assert_eq!(SceneError::new("at", -1e300, "less").to_string(), "at is -1e300: expected less");
+        assert_eq!(SceneError::new("at", 1.5e-40, "more").to_string(), "at is 1.5e-40: expected more");
+        let vector = glam::DVec2::new(2e30, 0.25);
+        assert_eq!(SceneError::new("at", vector, "less").to_string(), "at is [2e30, 0.25]: expected less");
+        // What people can read stays, and so do other texts.
+        assert_eq!(shown([123456789.125, -3.0]), "at is [123456789.125, -3.0]: expected less");
+        assert_eq!(
+            SceneError::new("name", "a.1.b", "another").to_string(),
+            "name is a.1.b: expected another"
+        );
     }
 }
 

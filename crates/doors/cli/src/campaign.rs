@@ -15,7 +15,7 @@ use raypencil::io::{MIN_ABANDONED_AGE, SharedFolder, create_folder, remove_aband
 use crate::args::{self, CampaignCommand, CampaignMerge, CampaignReplay, CampaignRun};
 use crate::console::{Spinner, progress_bar, say};
 use crate::lines::Lines;
-use crate::overwriting::ask_campaign;
+use crate::overwriting::{ask_campaign, ask_replay};
 use crate::{Outcome, Trouble};
 
 pub(crate) fn campaign(command: &args::Campaign, json: bool) -> Result<Outcome, Trouble> {
@@ -120,6 +120,7 @@ fn run(command: &CampaignRun, json: bool) -> Result<Outcome, Trouble> {
 fn merged(command: &CampaignMerge, json: bool) -> Result<Outcome, Trouble> {
     let merged = merge(&command.folders, crate::commit())?;
     if let Some(folder) = &command.output {
+        ask_campaign(folder)?;
         write_campaign(&merged, folder)?;
     }
     tell(&merged, json, "")
@@ -153,6 +154,7 @@ fn replay(command: &CampaignReplay) -> Result<Outcome, Trouble> {
     }
     let scene = scene_of(&campaign, command.terrain, command.part)?;
     let folder = &command.output;
+    ask_replay(folder)?;
     create_folder(folder)?;
     let file = folder.join("scene.toml");
     write_resolved(&file, &scene, "terrain.glb")?;

@@ -11,7 +11,9 @@ use crate::{Outcome, Trouble, memory};
 
 pub(crate) fn check(command: &Check, json: bool) -> Result<Outcome, Trouble> {
     let output = match &command.output {
-        Some(folder) => Some(output_folder(folder, &command.pack.to_string_lossy(), &[&command.candidate])?),
+        Some(folder) => {
+            Some(output_folder(folder, "check", &command.pack.to_string_lossy(), &[&command.candidate])?)
+        }
         None => None,
     };
     let outcome = checked(command, json)?;

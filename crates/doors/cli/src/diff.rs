@@ -32,7 +32,7 @@ pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
         }
     }
     let output = match &command.output {
-        Some(folder) => Some(output_folder(folder, &command.a.to_string_lossy(), &[&command.b])?),
+        Some(folder) => Some(output_folder(folder, "diff", &command.a.to_string_lossy(), &[&command.b])?),
         None => None,
     };
     let [a, b] = read_sides([&command.a, &command.b], &command.declared.declarations(), &spinner)?;

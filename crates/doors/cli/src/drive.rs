@@ -108,7 +108,8 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
         Some(folder) => folder.clone(),
         None => Path::new("out").join(format!("{}-drive", job.name)),
     };
-    let output = output_folder(&folder, &command.scene.scene, command.stripes.as_deref().as_slice())?;
+    let output =
+        output_folder(&folder, "drive", &command.scene.scene, command.stripes.as_deref().as_slice())?;
     let stripes = command
         .stripes
         .as_deref()

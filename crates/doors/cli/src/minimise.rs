@@ -41,7 +41,7 @@ pub(crate) fn minimise(command: &Minimise, json: bool, registry: &Registry) -> R
     let [of_a, of_b] = [a, b].map(|contender| contender.renderer.name());
     let what = format!("{of_a} and {of_b} {}", difference(class));
 
-    let output = output_folder(&command.output, &command.scene.scene, &[])?;
+    let output = output_folder(&command.output, "minimise", &command.scene.scene, &[])?;
     spinner.stage("searching for the first such ray");
     let found = first_interesting_ray([a, b], &subject.scene, class, JudgeShare::All).and_then(|first| {
         let is_interesting = is_interesting_in_class([a, b], class);

@@ -1,4 +1,5 @@
-//! Output folders that hold results of something else are refused, unless `--force` says that these may go.
+//! Output folders that hold results of another command, or of something else, are refused, unless `--force` says that these may
+//! go. One rule for all commands: the same command on the same subject replaces what it has made there, and nothing else does.
 
 use std::cell::Cell;
 use std::fmt;
@@ -29,28 +30,40 @@ pub(crate) fn subject(given: &str) -> String {
     std::fs::canonicalize(given).map_or(given.to_string(), |path| path.to_string_lossy().into_owned())
 }
 
-/// Begins the output folder of a run on a scene, a mesh or a pack. `inputs` are the files and folders that the run reads: none of them
+/// What a command's results are called in messages, and in the list of the folder.
+fn results(command: &str, of: &str) -> String {
+    format!("`{command}` on {}", subject(of))
+}
+
+/// Begins the output folder of a command's run on a scene, a mesh or a pack. `inputs` are the files and folders that the run reads: none of them
 /// may be an earlier run's in this folder.
-pub(crate) fn output_folder(folder: &Path, of: &str, inputs: &[&Path]) -> Result<OutputFolder, FolderError> {
+pub(crate) fn output_folder(
+    folder: &Path,
+    command: &str,
+    of: &str,
+    inputs: &[&Path],
+) -> Result<OutputFolder, FolderError> {
     if let Some(parts) = parts_in(folder).filter(|_| !is_forced()) {
         return Err(FolderError::IsOfOther { path: folder.to_path_buf(), of: parts.to_string() });
     }
-    let output = OutputFolder::begin_of(folder, &subject(of), is_forced())?;
+    let output = OutputFolder::begin_of(folder, &results(command, of), is_forced())?;
     output.refuse_inputs(&[inputs, &[Path::new(of)]].concat())?;
     Ok(output)
 }
 
 /// What several runs made together in their folder, which has no list of it.
 enum Parts {
-    /// Of a scene.
-    Sweep(String),
+    /// Of a scene, by what is done with it.
+    Sweep(String, String),
     Campaign,
 }
 
 impl fmt::Display for Parts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Sweep(scene) => write!(f, "a sweep of {}", harmless_line(scene)),
+            Self::Sweep(scene, task) => {
+                write!(f, "a sweep of {}, --do {}", harmless_line(scene), harmless_line(task))
+            }
             Self::Campaign => f.write_str("a campaign"),
         }
     }
@@ -58,8 +71,9 @@ impl fmt::Display for Parts {
 
 fn parts_in(folder: &Path) -> Option<Parts> {
     let plan = document(&folder.join("sweep.json"));
-    if let Some(scene) = plan.and_then(|plan| Some(plan["scene"].as_str()?.to_string())) {
-        return Some(Parts::Sweep(scene));
+    let text = |value: &Value| value.as_str().map(str::to_string);
+    if let Some((scene, task)) = plan.and_then(|plan| Some((text(&plan["scene"])?, text(&plan["task"])?))) {
+        return Some(Parts::Sweep(scene, task));
     }
     let has_record = |folder: &Path, begin: &str| {
         let names = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.file_name());
@@ -78,9 +92,15 @@ pub(crate) fn ask_campaign(folder: &Path) -> Result<(), FolderError> {
     ask_parts(folder, |parts| matches!(parts, Parts::Campaign))
 }
 
-/// The same for a sweep, whose plan says what it is of.
-pub(crate) fn ask_sweep(folder: &Path, of: &str) -> Result<(), FolderError> {
-    ask_parts(folder, |parts| matches!(parts, Parts::Sweep(held) if subject(held) == subject(of)))
+/// The same for a sweep, whose plan says what it is of and what it does.
+pub(crate) fn ask_sweep(folder: &Path, of: &str, task: &str) -> Result<(), FolderError> {
+    let is_same = |held: &str, held_task: &str| subject(held) == subject(of) && held_task == task;
+    ask_parts(folder, |parts| matches!(parts, Parts::Sweep(held, held_task) if is_same(held, held_task)))
+}
+
+/// The same for a replayed scene, which leaves no results: it is not written among those of any command, nor over a pack.
+pub(crate) fn ask_replay(folder: &Path) -> Result<(), FolderError> {
+    ask_pack(folder, PackOf::Nothing)
 }
 
 fn ask_parts(folder: &Path, is_same: impl Fn(&Parts) -> bool) -> Result<(), FolderError> {
@@ -89,7 +109,7 @@ fn ask_parts(folder: &Path, is_same: impl Fn(&Parts) -> bool) -> Result<(), Fold
     }
     // Only runs that have the folder for themselves leave a list.
     if let Some(held) = subject_of(folder) {
-        return refused(folder, format!("another command on {held}"));
+        return refused(folder, held);
     }
     match parts_in(folder).filter(|parts| !is_same(parts)) {
         Some(parts) => refused(folder, parts.to_string()),
@@ -117,6 +137,8 @@ pub(crate) enum PackOf<'a> {
     Mesh(&'a str),
     /// The input pack.
     Input,
+    /// What is written is no pack.
+    Nothing,
 }
 
 /// Refuses a folder for a pack that holds another one, or results of a run. The same pack is written again.

@@ -135,6 +135,7 @@ fn pack_rays(command: &Pack, rays: &Path, json: bool) -> Result<Outcome, Trouble
     let file = &command.scene.scene;
     spinner.stage(&format!("{file}: loading"));
     let mesh = read_triangles(file.as_ref())?;
+    mesh.require_faces(file.as_ref())?;
     let (packed, digest) = packed(rays)?;
     let units = FileUnits::Mesh { is_gltf: mesh.is_gltf, frame: FileFrame::default() };
     let source = CastSource {

@@ -19,7 +19,7 @@ pub(crate) fn render(command: &Render, json: bool, registry: &Registry) -> Resul
     let renderer = &contenders[0].renderer;
     let subject = subject(&command.scene, "", &spinner)?;
     memory::ask(Rates::RENDER, &subject.scene)?;
-    let folder = output_folder(&command.output, &command.scene.scene, &[])?;
+    let folder = output_folder(&command.output, "render", &command.scene.scene, &[])?;
     spinner.stage(&format!("{}: rendering", renderer.name()));
     let sampling = command.jitter.map_or(Sampling::Centres, |seed| Sampling::Jittered { seed });
     let output = renderer.render(&subject.scene, &Request { sampling, ..Request::EVERYTHING });

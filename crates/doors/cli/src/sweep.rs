@@ -76,7 +76,7 @@ fn run(command: &args::SweepRun, json: bool, registry: &Registry) -> Result<Outc
     sweep.check_values()?;
     let part = Part { index: command.shard.index, count: command.shard.count };
     let bar = Bar::new(part.runs(sweep.runs()).count() as u64);
-    ask_sweep(&command.output, &command.scene)?;
+    ask_sweep(&command.output, &command.scene, command.task.word())?;
     let _shared = SharedFolder::begin(&command.output)?;
     remove_abandoned(&command.output, MIN_ABANDONED_AGE);
     run_part(&sweep, part, &contenders, &command.output, &bar)?;
@@ -107,6 +107,7 @@ fn merged(command: &args::SweepMerge, json: bool) -> Result<Outcome, Trouble> {
             )));
         }
     }
+    ask_sweep(&command.output, &sweep.scene, sweep.task.word())?;
     let finished = finish(&sweep, &command.folders)?;
     tell(&finished, &command.chart, &command.output, json)
 }

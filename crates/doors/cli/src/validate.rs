@@ -22,7 +22,7 @@ pub(crate) fn validate(command: &Validate, json: bool, registry: &Registry) -> R
         Some(folder) => folder.clone(),
         None => Path::new("out").join(&subject.name),
     };
-    let output = output_folder(&folder, &command.scene.scene, &[])?;
+    let output = output_folder(&folder, "validate", &command.scene.scene, &[])?;
     // Candidates first, so that an error in their files is reported before the rendering.
     spinner.stage("reading candidates");
     let candidates = candidates(&command.candidates, &command.declared, &subject.scene)?;

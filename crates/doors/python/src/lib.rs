@@ -74,7 +74,7 @@ mod _raypencil {
     #[pymodule_export]
     use crate::render::render;
     #[pymodule_export]
-    use crate::scene::SceneCore;
+    use crate::scene::{SceneCore, refuse_contradictions};
     #[pymodule_export]
     use crate::sweep::{SweepCore, parse_axis};
     #[pymodule_export]

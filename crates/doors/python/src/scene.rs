@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use raypencil::io::{LoadedScene, Overrides, Setting, Subject, load, load_text_with, quoted};
+use raypencil::io::{LoadedScene, Overrides, SceneIoError, Setting, Subject, load, load_text_with, quoted};
 use raypencil::{Mounted, Pose};
 
 use crate::array::Array;
@@ -59,7 +59,8 @@ fn mounted_dict<'py, S>(py: Python<'py>, mounted: &Mounted<S>) -> PyResult<Bound
 
 #[pymethods]
 impl SceneCore {
-    /// `source`: a built-in name or a path; or, with `is_text`, the text of a scene file, which messages call `name`.toml.
+    /// `source`: a built-in name or a path; or, with `is_text`, the text of a scene file, which messages call `name`.toml. Of two
+    /// settings that contradict one another the later holds.
     #[new]
     #[pyo3(signature = (source, is_text, name, settings, on_stage=None))]
     fn new(
@@ -73,8 +74,9 @@ impl SceneCore {
         watched(py, on_stage, move |_| {
             let settings = settings
                 .iter()
-                .map(|(key, value)| Setting::new(key, value))
-                .collect::<Result<Vec<_>, _>>()?;
+                .map(|(key, value)| Ok(Setting::new(key, value)?.replacing()))
+                .collect::<Result<Vec<_>, SceneIoError>>()?;
+            let settings = Setting::last_of(settings);
             let of_settings: Vec<String> =
                 settings.iter().map(|setting| format!(" --set {}", quoted(&setting.to_string()))).collect();
             let overrides = Overrides { settings, ..Overrides::default() };
@@ -196,4 +198,13 @@ impl SceneCore {
 /// A failure of arguments.
 pub(crate) fn usage(py: Python<'_>, text: String) -> PyErr {
     Failure::new(text).into_exception(py)
+}
+
+/// Refuses settings given together of which one overwrites another, or that describe one thing in two ways.
+#[pyfunction]
+pub(crate) fn refuse_contradictions(py: Python<'_>, settings: Vec<(String, String)>) -> PyResult<()> {
+    let parsed: Result<Vec<Setting>, SceneIoError> =
+        settings.iter().map(|(key, value)| Setting::new(key, value)).collect();
+    let checked = parsed.and_then(|settings| raypencil::io::refuse_contradictions(&settings));
+    checked.map_err(|error| Failure::from(error).into_exception(py))
 }

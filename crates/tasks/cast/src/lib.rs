@@ -60,8 +60,8 @@ pub use comparison::{
     comparison_headline, comparison_json, comparison_text, write_comparison,
 };
 pub use pack::{
-    CandidateConventions, CloudFacts, RayPackChecked, RayPackCounts, check_ray_pack, is_ray_pack,
-    ray_pack_len, write_ray_pack, write_scan_pack,
+    AskedBy, CandidateConventions, CastGround, CloudFacts, RayPackChecked, RayPackCounts, check_ray_pack,
+    check_stated_rays, is_ray_pack, ray_pack_len, read_stated, write_ray_pack, write_scan_pack,
 };
 pub use page::{CastPage, ComparedHits, write_cast_page};
 pub use range_picture::{range_picture, top_picture};

@@ -3,10 +3,11 @@
 
 use std::path::{Path, PathBuf};
 
-use raypencil_files::{Channels, Storage, Values, harmless_line};
+use raypencil_cast::{CandidateConventions, Stated, read_stated};
+use raypencil_files::{Channels, FileError, Storage, Values, harmless_line, has_maps};
 use raypencil_judge::{Recorded, RecordingError};
 use raypencil_pack::{Declarations, Provenance, ProvenanceError, note};
-use raypencil_scene::{Image, Scene, SensorId};
+use raypencil_scene::{Image, NamedRaySet, Scene, SensorId};
 
 use crate::estimate::{Estimate, MonteCarloImage};
 
@@ -20,6 +21,9 @@ pub enum CandidateError {
     /// Its files; the message names the file, the channel and the cell.
     #[error(transparent)]
     Recording(#[from] RecordingError),
+    /// Its answers to a set of rays; the message names the file.
+    #[error(transparent)]
+    Rays(#[from] FileError),
 }
 
 impl CandidateError {
@@ -27,7 +31,7 @@ impl CandidateError {
     pub fn help(&self) -> Option<String> {
         match self {
             Self::Recording(error) => error.help(),
-            Self::Provenance(_) => None,
+            Self::Provenance(_) | Self::Rays(_) => None,
         }
     }
 }
@@ -49,6 +53,19 @@ pub struct Candidate {
     pub images: Vec<MonteCarloImage>,
     /// The radiance maps.
     pub radiance: Vec<RadianceMap>,
+    /// Its answers to sets of rays: one for each set of the scene of which it has a folder `rays/NAME`.
+    pub ray_sets: Vec<StatedRaySet>,
+}
+
+/// What a candidate states of a set of rays.
+#[derive(Debug, Clone)]
+pub struct StatedRaySet {
+    /// Index of the set in the scene.
+    pub index: usize,
+    /// Name of the set.
+    pub name: String,
+    /// What is stated.
+    pub stated: Stated,
 }
 
 /// Radiance of one beam's light along the rays of a sensor, W m^-2 sr^-1.
@@ -102,9 +119,17 @@ impl Candidate {
     ) -> Result<Self, CandidateError> {
         let note = note(folder, scene)?;
         let declared = declarations.clone().with_note(note.as_ref());
-        let channels = Recorded::channels(folder, scene, &declared.declared())?;
-        let recorded =
-            Recorded::of_folder(folder, scene, declared.precision(), &channels, declared.conventions())?;
+        let ray_sets = stated_ray_sets(folder, scene, &declared)?;
+        let (channels, recorded) = match ray_sets.is_empty() || has_maps(folder)? {
+            true => {
+                let channels = Recorded::channels(folder, scene, &declared.declared())?;
+                let (precision, conventions) = (declared.precision(), declared.conventions());
+                let recorded = Recorded::of_folder(folder, scene, precision, &channels, conventions)?;
+                (channels, recorded)
+            }
+            // It answers nothing but sets of rays.
+            false => (Channels::default(), Recorded::without_maps(folder, scene, declared.precision())),
+        };
         let name = note.as_ref().map_or_else(|| recorded.name.clone(), |note| note.program.clone());
         // Reports name the program, not its folder. A line break in it would look like a line of the report's own.
         let name = harmless_line(&name);
@@ -113,8 +138,27 @@ impl Candidate {
         let images = reader.images(note.as_ref())?;
         let radiance = reader.radiance()?;
         let declared = declarations.clone();
-        Ok(Self { name, folder: folder.to_path_buf(), declared, recorded, images, radiance })
+        Ok(Self { name, folder: folder.to_path_buf(), declared, recorded, images, radiance, ray_sets })
     }
+}
+
+/// Reads what a folder states of the sets of rays of a scene.
+fn stated_ray_sets(
+    folder: &Path,
+    scene: &Scene,
+    declared: &Declarations,
+) -> Result<Vec<StatedRaySet>, FileError> {
+    let conventions = CandidateConventions {
+        miss: declared.miss,
+        ignores_faces: declared.ignores_faces,
+        ..CandidateConventions::default()
+    };
+    let given = |(index, set): (usize, &NamedRaySet)| {
+        let of_set = folder.join("rays").join(&set.name);
+        let stated = of_set.is_dir().then(|| read_stated(&of_set, &set.shape, conventions));
+        Some(stated?.map(|stated| StatedRaySet { index, name: set.name.clone(), stated }))
+    };
+    scene.ray_sets().iter().enumerate().filter_map(given).collect()
 }
 
 /// Reads what a recording has beside the maps.

@@ -97,7 +97,7 @@ mod sides;
 mod validation;
 
 pub use any_pack::{CheckedPack, check_any_pack, pack_form};
-pub use candidate::{Candidate, CandidateError, RadianceMap};
+pub use candidate::{Candidate, CandidateError, RadianceMap, StatedRaySet};
 pub use estimate::{Estimate, MonteCarloImage};
 pub use hunt::{JudgedCandidate, judge_candidate};
 pub use interestingness::{first_interesting_ray, is_interesting_in_class};

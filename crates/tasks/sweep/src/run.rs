@@ -127,8 +127,18 @@ fn records_in(folder: &Path) -> Vec<OsString> {
 /// Joins the records of all runs of a sweep, which are in any of the folders.
 ///
 /// # Errors
-/// Runs without a record; runs of files of one name whose bytes differ.
+/// A folder that is given twice; runs without a record; runs of files of one name whose bytes differ.
 pub fn finish(sweep: &Sweep, folders: &[PathBuf]) -> Result<Finished, SweepError> {
+    let whole = |folder: &PathBuf| folder.canonicalize().unwrap_or_else(|_| folder.clone());
+    for (index, folder) in folders.iter().enumerate() {
+        // Whoever gives one twice has forgotten another, or counts its runs twice.
+        if folders[..index].iter().any(|earlier| whole(earlier) == whole(folder)) {
+            return Err(SweepError::Plan {
+                found: format!("{} is given twice", folder.display()),
+                expected: "each folder once".into(),
+            });
+        }
+    }
     let mut outcomes = Vec::new();
     let mut missing = Vec::new();
     let there: BTreeSet<OsString> = folders.iter().flat_map(|folder| records_in(folder)).collect();

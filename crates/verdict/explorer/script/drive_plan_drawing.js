@@ -2,7 +2,7 @@
 
 import { LABEL_LOOKS, drawMark } from './drive_looks.js';
 import { onCircle, halfWidth, wedgeOf } from './drive_sectors.js';
-import { roundStep, tickInWords } from './view3d_words.js';
+import { axisInWords, offsetOfAxis, roundStep, tickInWords } from './view3d_words.js';
 import { vecAdd, vecTurn } from './view3d_vector.js';
 
 /** @typedef {import('./drive_plan.js').PlanView} PlanView */
@@ -18,6 +18,8 @@ import { vecAdd, vecTurn } from './view3d_vector.js';
 const RECTANGLE = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]];
 /** @type {[number, number][]} */
 const HEADING_ARROW = [[-0.3, 0], [0.9, 0], [0.5, 0.22], [0.9, 0], [0.5, -0.22]];
+
+const LETTERS = '11px system-ui, sans-serif';
 
 export class PlanDrawing {
   /** @param {CanvasRenderingContext2D} context @param {PlanView} view @param {DriveTheme} theme */
@@ -62,6 +64,9 @@ export class PlanDrawing {
     const [left, top] = view.placeAt(0, 0);
     const [right, bottom] = view.placeAt(view.width, view.height);
     const axes = /** @type {const} */ ([[0, left, right], [1, bottom, top]]);
+    const offsets = axes.map(([axis, low, high]) => offsetOfAxis(low + origin[axis], high + origin[axis]));
+    const [across, upwards] = [axisInWords('x', offsets[0]), axisInWords('y', offsets[1])];
+    const room = view.width - 6 - this.widthOf(across) - 8;
     for (const [axis, low, high] of axes) {
       for (let k = Math.ceil((low + origin[axis]) / step); k * step <= high + origin[axis]; k += 1) {
         const place = k * step - origin[axis];
@@ -74,16 +79,17 @@ export class PlanDrawing {
         context.lineTo(axis === 0 ? pixel : view.width, axis === 0 ? view.height : pixel);
         context.stroke();
         context.globalAlpha = 1;
-        const word = tickInWords(k * step, step);
-        if (axis === 0 && pixel > 34 && pixel < view.width - 60) {
+        const word = tickInWords(k * step - offsets[axis], step);
+        const half = this.widthOf(word) / 2;
+        if (axis === 0 && pixel - half > 6 && pixel + half < room) {
           this.word(word, pixel, view.height - 5, 'center', 'bottom', theme.ink);
-        } else if (axis === 1 && pixel > 12 && pixel < view.height - 26) {
+        } else if (axis === 1 && pixel > 26 && pixel < view.height - 26) {
           this.word(word, 5, pixel, 'left', 'middle', theme.ink);
         }
       }
     }
-    this.word('x, m', view.width - 6, view.height - 5, 'right', 'bottom', theme.ink);
-    this.word('y, m', 5, 5, 'left', 'top', theme.ink);
+    this.word(across, view.width - 6, view.height - 5, 'right', 'bottom', theme.ink);
+    this.word(upwards, 5, 5, 'left', 'top', theme.ink);
     this.scaleBar(step);
   }
 
@@ -102,11 +108,17 @@ export class PlanDrawing {
     this.word(words, x + length / 2, y - 4, 'center', 'bottom', theme.ink);
   }
 
+  /** Width of a word, CSS pixels. @param {string} text */
+  widthOf(text) {
+    this.context.font = LETTERS;
+    return this.context.measureText(text).width;
+  }
+
   /** A word with an edge. @param {string} text @param {number} x @param {number} y @param {CanvasTextAlign} align
    * @param {CanvasTextBaseline} baseline @param {string} colour */
   word(text, x, y, align, baseline, colour) {
     const { context, theme } = this;
-    context.font = '11px system-ui, sans-serif';
+    context.font = LETTERS;
     context.textAlign = align;
     context.textBaseline = baseline;
     context.lineJoin = 'round';

@@ -70,6 +70,21 @@ export function tickInWords(value, step) {
   return Number(text) === 0 ? (0).toFixed(places) : text.replace('-', '−');
 }
 
+/** A round number from which the coordinates of an axis are counted, so that their labels stay short; 0 if they are short by
+ * themselves. The rule is that of `axis_from_offset` of the figures. @param {number} low @param {number} high */
+export function offsetOfAxis(low, high) {
+  if (!(high > low) || Math.max(Math.abs(low), Math.abs(high)) < 1000) return 0;
+  const power = 10 ** Math.ceil(Math.log10(high - low) - 1e-9);
+  const from = (/** @type {number} */ step) => Math.floor(low / step) * step;
+  return from(10 * power) === 0 ? from(power) : from(10 * power);
+}
+
+/** Name of an axis whose coordinates are counted from an offset: `x − 500000, m`. @param {string} name @param {number} offset */
+export function axisInWords(name, offset) {
+  if (offset === 0) return `${name}, m`;
+  return `${name} ${offset < 0 ? '+' : '−'} ${Math.abs(offset)}, m`;
+}
+
 /** `face 12`, `faces 12 and 13`, `faces 1, 2 and 4 more`. @param {ArrayLike<number>} faces */
 export function facesInWords(faces) {
   const list = Array.from(faces);

@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use raypencil_diagnosis::{Diagnosis, diagnose};
-use raypencil_files::{FileError, Limits, Storage, file_sha256_hex, read_listed_channels};
+use raypencil_files::{
+    FileError, Limits, Storage, file_sha256_hex, has_maps, has_ray_sets, read_listed_channels,
+};
 use raypencil_judge::{
     Answers, Check, Class, DifferingRay, GroundTruth, Item, JudgeShare, Quantity, Recorded, RecordingError,
     SensorResult, UncertifiedAnswer, check,
@@ -224,7 +226,11 @@ pub fn check_pack_by(
     // The candidate before the answers, so that its faults are reported soon.
     progress.stage("reading the candidate");
     let declared = declarations.clone().with_note(note(candidate, &scene)?.as_ref());
-    let recorded = {
+    let has_sets = manifest.files.iter().any(|file| file.role == FileRole::RaySet);
+    let recorded = if has_sets && has_ray_sets(candidate)? && !has_maps(candidate)? {
+        // It answers nothing but sets of rays.
+        Recorded::without_maps(candidate, &scene, declared.precision())
+    } else {
         // The channels go once they are taken over: else the check would take half as much memory again.
         let channels = Recorded::channels(candidate, &scene, &declared.declared())?;
         Recorded::of_folder(candidate, &scene, declared.precision(), &channels, declared.conventions())?

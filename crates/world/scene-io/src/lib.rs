@@ -86,7 +86,7 @@ pub use raypencil_files::quoted;
 pub use resolved::write::write_resolved;
 pub use scene_error::SceneIoError;
 pub use scene_source::{MESH_ENDINGS, SceneSource};
-pub use settings::Setting;
+pub use settings::{Setting, refuse_contradictions};
 pub use subject::{Subject, probe_command};
 pub use toml_problem::TomlProblem;
 pub use trajectory::{MAX_TRAJECTORY_BYTES, poses_from_text};

@@ -3,6 +3,7 @@
 use raypencil_scene::{Beam, FluxModel};
 
 use crate::parse::shared::{FAN_DEG, GLOBAL_M, THICKNESS_MM, TURN_DEG};
+use crate::parse::source::number_text;
 use crate::plan::ScenePlan;
 use crate::scene_error::SceneIoError;
 use crate::settings::Setting;
@@ -63,8 +64,29 @@ impl Overrides {
         ];
         for (name, value, range, unit) in all {
             if let Some(value) = value.filter(|value| !range.contains(value)) {
-                let expected = format!("{} to {} {unit}", range.start(), range.end());
-                return Err(SceneIoError::Override { name, value: value.to_string(), expected });
+                let [low, high] = [range.start(), range.end()].map(|end| number_text(*end));
+                let expected = format!("{low} to {high} {unit}");
+                return Err(SceneIoError::Override { name, value: number_text(value), expected });
+            }
+        }
+        self.check_settings()
+    }
+
+    /// Refuses a setting of what is given as a number of its own, too.
+    fn check_settings(&self) -> Result<(), SceneIoError> {
+        let numbers = [
+            ("at", self.at.is_some(), "vehicle.position_m"),
+            ("heading", self.heading_deg.is_some(), "vehicle.heading_deg"),
+            ("fan", self.fan_deg.is_some(), "beam.fan_deg"),
+            ("thickness", self.thickness_mm.is_some(), "beam.thickness_mm"),
+            ("flux", self.flux_model.is_some(), "flux.model"),
+        ];
+        for (name, _, key) in numbers.into_iter().filter(|(_, is_given, _)| *is_given) {
+            let own = Setting::new(key, "")?;
+            if let Some(setting) = self.settings.iter().find(|setting| setting.overlaps(&own)) {
+                return Err(
+                    setting.refused(format!("{name} (--{name}) sets the same; expected one of the two"))
+                );
             }
         }
         Ok(())

@@ -79,6 +79,7 @@ pub fn load_ray_scene(path: &Path, settings: &[Setting]) -> Result<RayScene, Sce
         Terrain::File(MeshPart { file: terrain, frame }) => {
             let terrain = terrain_file(&file, "file", &MESH_ENDINGS, terrain, &plan.terrain_span)?;
             let read = read_triangles(&terrain)?;
+            read.require_faces(&terrain)?;
             let triangles = frame.triangles(read.triangles).map_err(unfit)?;
             // A vehicle with a height needs no ground, which may then have any size.
             let ground = match plan.vehicle.height {

@@ -32,6 +32,8 @@ const MAX_PARTS: usize = 16;
 pub struct Setting {
     key: String,
     value: String,
+    /// Whether it replaces what earlier settings say of the same.
+    replaces: bool,
 }
 
 impl Setting {
@@ -57,7 +59,7 @@ impl Setting {
     /// # Errors
     /// A key with an empty part, with a character that no key has, or of more than 16 parts.
     pub fn new(key: &str, value: &str) -> Result<Self, SceneIoError> {
-        let setting = Self { key: key.into(), value: value.into() };
+        let setting = Self { key: key.into(), value: value.into(), replaces: false };
         let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-".contains(c);
         if key.split('.').any(|part| part.is_empty() || !part.chars().all(is_plain)) {
             return Err(
@@ -70,6 +72,51 @@ impl Setting {
             return Err(setting.refused(format!("the key has {parts} parts; expected at most {MAX_PARTS}")));
         }
         Ok(setting)
+    }
+
+    /// The same as a later change of a scene that has settings already: where two say the same, this one holds. Without this
+    /// such a pair is refused.
+    ///
+    /// ```
+    /// use raypencil_scene_io::{Overrides, Setting, load};
+    ///
+    /// let settings = vec![Setting::parse("beam.0.thickness_mm=4")?, Setting::parse("beam.thickness_mm=8")?];
+    /// let error = load("pyramids", &Overrides { settings: settings.clone(), ..Overrides::default() }).unwrap_err();
+    /// assert!(error.to_string().contains("beam.0.thickness_mm=4"), "{error}");
+    /// let settings = settings.into_iter().map(Setting::replacing).collect();
+    /// let scene = load("pyramids", &Overrides { settings, ..Overrides::default() })?.scene;
+    /// assert_eq!(scene.beams()[0].sensor.thickness, 0.008);
+    /// # Ok::<(), raypencil_scene_io::SceneIoError>(())
+    /// ```
+    pub fn replacing(self) -> Self {
+        Self { replaces: true, ..self }
+    }
+
+    /// Those of several later changes that count: one that a later one overwrites as a whole, or whose place it takes, goes.
+    ///
+    /// ```
+    /// use raypencil_scene_io::Setting;
+    ///
+    /// let settings = ["beam.0.fan_deg=60", "camera.focal_length_mm=8", "beam.fan_deg=70", "camera.field_of_view_deg=50"];
+    /// let settings = settings.into_iter().map(Setting::parse).collect::<Result<Vec<_>, _>>()?;
+    /// let left: Vec<String> = Setting::last_of(settings).iter().map(ToString::to_string).collect();
+    /// assert_eq!(left, ["beam.fan_deg=70", "camera.field_of_view_deg=50"]);
+    /// # Ok::<(), raypencil_scene_io::SceneIoError>(())
+    /// ```
+    pub fn last_of(settings: Vec<Self>) -> Vec<Self> {
+        let covers = |later: &Self, earlier: &Self| {
+            meet(&later.parts(), &earlier.parts(), true) || displaces(later, earlier)
+        };
+        let is_left =
+            |index: usize| !settings[index + 1..].iter().any(|later| covers(later, &settings[index]));
+        let left: Vec<bool> = (0..settings.len()).map(is_left).collect();
+        settings.into_iter().zip(left).filter(|(_, left)| *left).map(|(setting, _)| setting).collect()
+    }
+
+    /// Whether both set the same value, one of them perhaps as a part of what the other sets. A number within the one key that
+    /// the other does not have chooses a table of those that the other means.
+    pub(crate) fn overlaps(&self, other: &Self) -> bool {
+        meet(&self.parts(), &other.parts(), false)
     }
 
     fn parts(&self) -> Vec<&str> {
@@ -98,11 +145,66 @@ pub(crate) struct ChangedText {
     pub(crate) places: Vec<(Range<usize>, Setting)>,
 }
 
-/// Puts settings into the text of a scene file. The first of two settings of one key is lost.
+/// Whether two keys mean the same value, or one of them a part of the other's; with `as_whole` whether the first means all of the
+/// second. A number that one of them has where the other has none chooses a table of those that the other means.
+fn meet(first: &[&str], second: &[&str], as_whole: bool) -> bool {
+    let is_number = |part: &str| part.parse::<usize>().is_ok();
+    match (first, second) {
+        ([], _) => true,
+        (_, []) => !as_whole,
+        ([one, of_first @ ..], [other, of_second @ ..]) if one == other => {
+            meet(of_first, of_second, as_whole)
+        }
+        ([one, of_first @ ..], [other, ..]) if is_number(one) && !is_number(other) => {
+            !as_whole && meet(of_first, second, false)
+        }
+        ([one, ..], [other, of_second @ ..]) if is_number(other) && !is_number(one) => {
+            meet(first, of_second, as_whole)
+        }
+        _ => false,
+    }
+}
+
+/// Refuses two settings of which one overwrites the other, or a part of it, and two that describe one thing in two ways: the
+/// scene would be that of one of them, and whatever tells of the settings would name both.
 ///
 /// # Errors
-/// A setting that does not fit the tables of the file; a file that is no TOML gives `None`, and its reader says why.
+/// The later of the two, with the earlier.
+pub fn refuse_contradictions(settings: &[Setting]) -> Result<(), SceneIoError> {
+    for (index, later) in settings.iter().enumerate().filter(|(_, later)| !later.replaces) {
+        for earlier in settings[..index].iter().filter(|earlier| *earlier != later) {
+            if later.overlaps(earlier) {
+                return Err(later.refused(format!("{earlier} sets the same; expected one of the two")));
+            }
+            if displaces(later, earlier) || displaces(earlier, later) {
+                return Err(
+                    later.refused(format!("it cannot stand beside {earlier}; expected one of the two"))
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Whether what the second sets goes where the first is set.
+fn displaces(first: &Setting, second: &Setting) -> bool {
+    match (first.parts().as_slice(), second.parts().as_slice()) {
+        ([table, key, ..], [other_table, other, ..]) => {
+            table == other_table
+                && key != other
+                && displaced(table, key).iter().any(|keys| keys.contains(other))
+        }
+        _ => false,
+    }
+}
+
+/// Puts settings into the text of a scene file. Of two settings of one key the last holds, if it
+/// [replaces](Setting::replacing).
+///
+/// # Errors
+/// Two settings that contradict one another; a setting that does not fit the tables of the file; a file that is no TOML gives `None`, and its reader says why.
 pub(crate) fn changed(text: &str, settings: &[Setting]) -> Result<Option<ChangedText>, SceneIoError> {
+    refuse_contradictions(settings)?;
     let Ok(mut document) = DocumentMut::from_str(text) else { return Ok(None) };
     for setting in settings {
         let parts = setting.parts();
@@ -137,15 +239,19 @@ fn make_room(root: &mut Table, parts: &[&str]) {
         }
         root.insert("beam", Item::ArrayOfTables(beams));
     }
-    let displaced = match *name {
-        "terrain" => displaced_by_ground(key),
-        "camera" => displaced_by_image(key),
-        _ => return,
-    };
     if let Some(table) = root.get_mut(name).and_then(Item::as_table_like_mut) {
-        for other in displaced.into_iter().flatten().filter(|other| **other != *key) {
+        for other in displaced(name, key).into_iter().flatten().filter(|other| **other != *key) {
             table.remove(other);
         }
+    }
+}
+
+/// Keys of a table that go when this one of it is set.
+fn displaced(table: &str, key: &str) -> [&'static [&'static str]; 3] {
+    match table {
+        "terrain" => displaced_by_ground(key),
+        "camera" => displaced_by_image(key),
+        _ => [&[]; 3],
     }
 }
 

@@ -40,6 +40,17 @@ pub(super) struct RecordingFile {
     pub stem: Option<String>,
 }
 
+/// Whether a recording has any file that may hold maps: a folder may have answers to sets of rays alone.
+///
+/// # Errors
+/// Names the file or folder that cannot be read.
+pub fn has_maps(path: &Path) -> Result<bool, FileError> {
+    match path.is_dir() {
+        true => Ok(!files_in(path)?.is_empty()),
+        false => Ok(true),
+    }
+}
+
 /// Files of a recording, ordered by their keys. There is at least one.
 pub(super) fn recording_files(path: &Path) -> Result<Vec<RecordingFile>, FileError> {
     let refused = |error| FileError::io(path, "read", error);
@@ -51,6 +62,18 @@ pub(super) fn recording_files(path: &Path) -> Result<Vec<RecordingFile>, FileErr
         };
         return Ok(vec![RecordingFile { path: path.to_path_buf(), format, stem: None }]);
     }
+    let found = files_in(path)?;
+    if found.is_empty() {
+        let expected =
+            format!("at least one file that ends in {ENDINGS}, here or one folder below, or a .zarr store");
+        return Err(FileError::recording(path, Fault::new("folder", "no maps", expected)));
+    }
+    Ok(found)
+}
+
+/// Files of a recording in a folder, ordered by their keys.
+pub(super) fn files_in(path: &Path) -> Result<Vec<RecordingFile>, FileError> {
+    let refused = |error| FileError::io(path, "read", error);
     if is_zarr(path) {
         return Ok(vec![RecordingFile { path: path.to_path_buf(), format: FileFormat::Zarr, stem: None }]);
     }
@@ -66,11 +89,6 @@ pub(super) fn recording_files(path: &Path) -> Result<Vec<RecordingFile>, FileErr
         } else {
             found.extend(candidate(entry, None));
         }
-    }
-    if found.is_empty() {
-        let expected =
-            format!("at least one file that ends in {ENDINGS}, here or one folder below, or a .zarr store");
-        return Err(FileError::recording(path, Fault::new("folder", "no maps", expected)));
     }
     found.sort_by(|a, b| (&a.stem, &a.path).cmp(&(&b.stem, &b.path)));
     Ok(found)

@@ -26,10 +26,15 @@ impl Found {
     /// A component of an array whose key is `stem`.
     fn of_array(stem: &str, file: &Path, component: &str, storage: Storage, values: Values) -> Self {
         let key = if component.is_empty() { stem.to_string() } else { format!("{stem}.{component}") };
+        let channel = Channel { file: file.to_path_buf(), name: component.to_string(), storage, values };
+        Self::of_channel(key, channel)
+    }
+
+    /// A channel of an array, or a component of one, that has this key.
+    pub(super) fn of_channel(key: String, channel: Channel) -> Self {
         let head = key.split_once('/').map(|(head, _)| head.to_string());
         let own = key.rsplit('/').next().unwrap_or(&key).to_string();
         let names = [vec![own], tails(&key)].concat();
-        let channel = Channel { file: file.to_path_buf(), name: component.to_string(), storage, values };
         Self { key, head, names, channel }
     }
 }

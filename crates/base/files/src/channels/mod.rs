@@ -10,5 +10,6 @@ mod read;
 
 pub use channel::{Channel, Channels, Used};
 pub use declared::{Declared, DeclaredChannel};
-pub use ray_sets::add_ray_sets;
+pub use find::has_maps;
+pub use ray_sets::{add_ray_sets, has_ray_sets, is_ray_set};
 pub use read::{read_channels, read_channels_as, read_listed_channels};

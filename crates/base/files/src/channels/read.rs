@@ -1,13 +1,16 @@
 //! Reads the channels of a file or of a folder, with their keys.
 
-use std::collections::BTreeMap;
-use std::path::Path;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use raypencil_scene::HitQuantity;
 
 use crate::channels::channel::{Channel, Channels};
 use crate::channels::declared::Declared;
 use crate::channels::find::{self, FileFormat, RecordingFile};
 use crate::channels::found::{self, Found};
 use crate::channels::merge::merge;
+use crate::channels::ray_sets::{has_ray_sets, is_ray_set, ray_set_channels};
 use crate::error::FileError;
 use crate::exr::read_exr_parts;
 use crate::limits::Limits;
@@ -49,7 +52,9 @@ pub fn read_channels(path: impl AsRef<Path>, limits: &Limits) -> Result<Channels
 }
 
 /// The same for a recording of which something is declared. Of the pictures in a folder (`.png`, `.tif`), those of which one of
-/// the names in `pictures` or a declared channel speaks are read; without `pictures`, all.
+/// the names in `pictures` or a declared channel speaks are read; without `pictures`, all but those beside arrays and maps, of
+/// which a picture is no channel unless it has the name of a map. Without `pictures`, the arrays of a folder that is itself a
+/// set of rays (see [`is_ray_set`]) are read as those of a set, whatever their dimensions.
 ///
 /// ```
 /// use raypencil_files::{Declared, Limits, create_folder, read_channels_as, write_npy};
@@ -78,11 +83,46 @@ pub fn read_channels_as(
     pictures: Option<&[String]>,
 ) -> Result<Channels, FileError> {
     let path = path.as_ref();
-    let mut files = find::recording_files(path)?;
-    if let (Some(names), true) = (pictures, path.is_dir()) {
-        files.retain(|file| !file.format.is_picture() || is_spoken_of(file, names, declared));
+    // Answers to sets of rays alone are a recording too; `add_ray_sets` reads them.
+    let mut files = match pictures {
+        None if has_ray_sets(path)? => find::files_in(path)?,
+        _ => find::recording_files(path)?,
+    };
+    let mut set = Channels::default();
+    let mut left = *limits;
+    match (pictures, path.is_dir()) {
+        (_, false) => (),
+        (Some(names), true) => {
+            files.retain(|file| !file.format.is_picture() || is_spoken_of(file, names, declared));
+        }
+        (None, true) => {
+            let folders: BTreeSet<PathBuf> =
+                files.iter().filter(|file| !file.format.is_picture()).filter_map(folder_of).collect();
+            let names = map_names();
+            files.retain(|file| {
+                let has_arrays = folder_of(file).is_some_and(|folder| folders.contains(&folder));
+                !file.format.is_picture() || !has_arrays || is_spoken_of(file, &names, declared)
+            });
+            if is_ray_set(path) {
+                set = ray_set_channels(path, &mut left)?;
+                files.retain(|file| !set.files.contains(&file.path));
+            }
+        }
     }
-    read_files(files, limits, declared, path)
+    read_files(files, set, &left, declared, path)
+}
+
+/// The folder of a file.
+fn folder_of(file: &RecordingFile) -> Option<PathBuf> {
+    file.path.parent().map(Path::to_path_buf)
+}
+
+/// Names of maps that a picture may have, whatever the scene is.
+fn map_names() -> Vec<String> {
+    let of_hits = HitQuantity::ALL.into_iter().flat_map(|quantity| quantity.channels().iter().copied());
+    let vectors = of_hits.clone().filter_map(|name| name.strip_suffix(".X"));
+    let names = of_hits.chain(vectors).chain(["view.Z", "face.I", "visible.V", "flux.V"]);
+    names.map(String::from).collect()
 }
 
 /// Whether a picture has one of these names, or is declared to be a map.
@@ -109,18 +149,21 @@ pub fn read_listed_channels<'a>(
 ) -> Result<Channels, FileError> {
     let folder = folder.as_ref();
     let files = paths.into_iter().filter_map(|path| find::listed_file(folder, path));
-    read_files(files.collect(), limits, &Declared::default(), folder)
+    read_files(files.collect(), Channels::default(), limits, &Declared::default(), folder)
 }
 
-/// Reads these files, and puts the channels of each key together.
+/// Reads these files, and puts the channels of each key together, and with them those of a set of rays.
 fn read_files(
     files: Vec<RecordingFile>,
+    set: Channels,
     limits: &Limits,
     declared: &Declared,
     root: &Path,
 ) -> Result<Channels, FileError> {
     let mut channels = Channels::default();
-    let mut found: Vec<Found> = Vec::new();
+    channels.files = set.files;
+    let mut found: Vec<Found> =
+        set.by_key.into_iter().map(|(key, channel)| Found::of_channel(key, channel)).collect();
     let mut left = *limits;
     for file in files {
         let of_file = read_one_file(&file, &left, &mut channels)?;

@@ -60,8 +60,8 @@ pub(crate) struct SweepRun {
     #[arg(long)]
     pub(crate) as_printed: bool,
 
-    /// Draw a result against a parameter; with a second parameter, a line for each of its values. May be repeated. The
-    /// main results are drawn against each parameter anyhow.
+    /// Draw a result against a parameter; with a second parameter, a line for each of its values. May be repeated. Of
+    /// images and drives the main results are drawn against each parameter anyhow; of --do validate nothing else is.
     #[arg(long, value_name = "RESULT,KEY[,KEY]", value_parser = chart)]
     pub(crate) chart: Vec<Chart>,
 

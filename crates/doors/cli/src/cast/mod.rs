@@ -66,7 +66,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
     let output = match folder {
         Some(folder) => {
             let rays = command.rays.as_deref();
-            Some(output_folder(folder, &command.mesh.to_string_lossy(), rays.as_slice())?)
+            Some(output_folder(folder, "cast", &command.mesh.to_string_lossy(), rays.as_slice())?)
         }
         None => None,
     };
@@ -322,6 +322,7 @@ fn given(command: &Cast, spinner: &Spinner) -> Result<Given, Trouble> {
         }
         false => {
             let read = read_triangles(&command.mesh)?;
+            read.require_faces(&command.mesh)?;
             let too_large = |source| FileError::Scene { origin: name.clone(), source };
             let units = Some(FileUnits::Mesh { is_gltf: read.is_gltf, frame });
             let facts = FileFacts { units, polygons: read.polygon_facts };

@@ -159,6 +159,7 @@ class Scene:
             text = os.fspath(source)
             is_text = isinstance(source, str) and "\n" in text
             given = [*_toml.settings(tables), *given]
+        _raypencil.refuse_contradictions(given)
         self._load(text, is_text, name, tuple(given), progress)
 
     def _load(
@@ -184,6 +185,8 @@ class Scene:
         scene = Scene.__new__(Scene)
         scene._ground = self._ground
         more = (*_toml.settings(settings or {}), *_toml.settings(tables))
+        # What is given now holds over the scene's own settings, but not over one another.
+        _raypencil.refuse_contradictions(list(more))
         scene._load(self._source, self._is_text, self._name, self._settings + more)
         return scene
 

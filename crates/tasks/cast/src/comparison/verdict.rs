@@ -161,3 +161,10 @@ pub struct CastCounts {
     /// Wrong.
     pub wrong: u64,
 }
+
+impl CastCounts {
+    /// All rays.
+    pub fn all(&self) -> u64 {
+        self.same + self.rounding + self.wrong
+    }
+}

@@ -23,7 +23,10 @@ pub struct CandidateConventions {
 
 /// Reads what a folder has of `face.npy`, `t.npy`, `range.npy`, `side.npy`, `point.npy`, `normal.npy`, `barycentric.npy`
 /// and `cos_incidence.npy`, in any type, of the rays' shape or flat.
-pub(super) fn read_candidate(
+///
+/// # Errors
+/// An array that cannot be read or has another shape; a folder that does not say which rays hit.
+pub fn read_candidate(
     folder: &Path,
     shape: &[u64],
     conventions: CandidateConventions,

@@ -5,10 +5,10 @@ use std::path::Path;
 use raypencil_files::{Fault, FileError, RayArray, quoted, ray_rows};
 use raypencil_mesh_io::is_cloud_file;
 use raypencil_referee::ExactCast;
-use raypencil_scene::{Precision, Progress};
+use raypencil_scene::{CastRay, Precision, Progress, Sides, Triangles};
 
 use super::candidate::{CandidateConventions, read_candidate};
-use super::clouds::{CloudFacts, of_cloud, read_cloud_of};
+use super::clouds::{CloudCase, CloudFacts, of_cloud, read_cloud_of};
 use super::lengths::lengths;
 use super::mistakes::{Trial, explain};
 use super::read::RayPack;
@@ -20,10 +20,12 @@ use crate::comparison::{Comparison, Stated, compare_with};
 pub struct RayPackChecked {
     /// The candidate's name: that of its folder.
     pub name: String,
-    /// The folder of the pack, as it was given.
+    /// The folder of the pack, as it was given; of a scene without a pack its name.
     pub pack: String,
-    /// SHA-256 of its `raypack.json`, which has the digest of every other file.
+    /// SHA-256 of its `raypack.json`, which has the digest of every other file; of a scene without a pack that of the scene.
     pub pack_sha256: String,
+    /// The command that asks rays on the mesh; `--ray` follows.
+    pub cast_command: String,
     /// What became of its rays.
     pub comparison: Comparison,
     /// What explains why it is wrong, as one sentence. It changes no verdict.
@@ -53,8 +55,42 @@ impl RayPackChecked {
         let (_, numbers) = ray_rows(&self.rays.rays[index..=index]);
         let numbers: Vec<String> = numbers.iter().map(f64::to_string).collect();
         let fronts = if self.fronts_only { " --fronts-only" } else { "" };
-        format!("raypencil cast {} --ray={}{fronts} --all --margins", quoted(&self.pack), numbers.join(","))
+        format!("{} --ray={}{fronts} --all --margins", self.cast_command, numbers.join(","))
     }
+}
+
+/// A mesh with the trees of its exact answers, and which of its sides are hit.
+#[derive(Debug, Clone, Copy)]
+pub struct CastGround<'a> {
+    /// The mesh.
+    pub mesh: &'a Triangles,
+    /// Exact answers on that mesh.
+    pub exact: &'a ExactCast<'a>,
+    /// Which sides of a face are hit.
+    pub sides: Sides,
+}
+
+/// Who asks rays.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct AskedBy {
+    /// See [`RayPackChecked::pack`].
+    pub name: String,
+    /// See [`RayPackChecked::pack_sha256`].
+    pub sha256: String,
+    /// See [`RayPackChecked::cast_command`].
+    pub cast_command: String,
+}
+
+/// Checks what the candidate of this name states of rays, by the rule of every pack of rays.
+pub fn check_stated_rays(
+    asked_by: AskedBy,
+    (ground, rays): (CastGround<'_>, RayArray),
+    (name, stated): (String, Stated),
+    precision: Precision,
+    progress: &dyn Progress,
+) -> RayPackChecked {
+    let judged = judge(ground, &rays.rays, (&stated, None), precision, progress);
+    judged.checked(asked_by, (rays, ground.sides), (name, stated))
 }
 
 /// Checks a candidate against a pack of rays: a folder of arrays, or a point cloud, PCD or PLY. The answers are computed again: only the question is read
@@ -101,37 +137,78 @@ pub fn check_ray_pack(
         None => read_candidate(candidate, &rays.shape, conventions)?,
     };
     let exact = ExactCast::new(&mesh);
-    progress.stage(&format!("comparing {} rays", rays.rays.len()));
-    let comparison = compare_with(&exact, &mesh, &rays.rays, sides, &stated, precision);
+    let ground = CastGround { mesh: &mesh, exact: &exact, sides };
+    let judged = judge(ground, &rays.rays, (&stated, case), precision, progress);
+    refuse_other_answers(pack, &rays, &Stated::of(&judged.answers))?;
+    let name = candidate.file_name().map_or_else(|| ".".into(), |name| name.to_string_lossy().into_owned());
+    let pack = pack.display().to_string();
+    let asked_by = AskedBy {
+        cast_command: format!("raypencil cast {}", quoted(&pack)),
+        name: pack,
+        sha256: pack_sha256,
+    };
+    Ok(judged.checked(asked_by, (rays, sides), (name, stated)))
+}
+
+/// What was found of rays.
+struct Judged {
+    comparison: Comparison,
+    why: Option<String>,
+    answers: Answers,
+    cloud: Option<CloudFacts>,
+}
+
+impl Judged {
+    fn checked(
+        self,
+        AskedBy { name: pack, sha256: pack_sha256, cast_command }: AskedBy,
+        (rays, sides): (RayArray, Sides),
+        (name, stated): (String, Stated),
+    ) -> RayPackChecked {
+        let Self { comparison, why, answers, cloud } = self;
+        let fronts_only = sides == Sides::Fronts;
+        RayPackChecked {
+            name,
+            pack,
+            pack_sha256,
+            cast_command,
+            comparison,
+            why,
+            rays,
+            answers,
+            stated,
+            fronts_only,
+            cloud,
+        }
+    }
+}
+
+/// Judges stated answers, and those of a cloud with what the cloud says beside them.
+fn judge(
+    CastGround { mesh, exact, sides }: CastGround<'_>,
+    rays: &[CastRay],
+    (stated, case): (&Stated, Option<CloudCase<'_>>),
+    precision: Precision,
+    progress: &dyn Progress,
+) -> Judged {
+    progress.stage(&format!("comparing {} rays", rays.len()));
+    let comparison = compare_with(exact, mesh, rays, sides, stated, precision);
     let wrong: Vec<usize> = comparison.wrong().map(|(index, _)| index).collect();
     let why = (!wrong.is_empty()).then(|| {
         progress.stage("looking for a mistake that explains the wrong rays");
-        let of_cloud = case.as_ref().map(|case| of_cloud(case, &exact, sides));
-        let stated = (&stated, of_cloud.as_ref());
-        let lengths = |trial: &Trial| lengths(trial, &exact, sides);
-        explain(&exact, &mesh, (&rays.rays, sides), stated, &lengths, precision, &wrong)
+        let of_cloud = case.as_ref().map(|case| of_cloud(case, exact, sides));
+        let stated = (stated, of_cloud.as_ref());
+        let lengths = |trial: &Trial| lengths(trial, exact, sides);
+        explain(exact, mesh, (rays, sides), stated, &lengths, precision, &wrong)
     });
-    let answers = cast_with(&exact, &rays.rays, sides, Questions::default(), progress);
-    refuse_other_answers(pack, &rays, &Stated::of(&answers))?;
-    let name = candidate.file_name().map_or_else(|| ".".into(), |name| name.to_string_lossy().into_owned());
+    let answers = cast_with(exact, rays, sides, Questions::default(), progress);
     let cloud = case.map(|case| case.facts);
     let of_keys = cloud.as_ref().and_then(|cloud| cloud.keys_why.clone());
     let why = match why {
         Some(explanation) => explanation.map(|explanation| explanation.sentence()),
         None => of_keys.map(|words| format!("100.0000 % agree if {words}")),
     };
-    Ok(RayPackChecked {
-        name,
-        pack: pack.display().to_string(),
-        pack_sha256,
-        why,
-        fronts_only: sides == raypencil_scene::Sides::Fronts,
-        cloud,
-        comparison,
-        rays,
-        answers,
-        stated,
-    })
+    Judged { comparison, why, answers, cloud }
 }
 
 /// Refuses a pack whose own first hits are not the exact ones: anyone can change an answer and write its digest anew.

@@ -1,7 +1,7 @@
 //! Figures 12 and 15: the relief of the local map as a wire frame, seen from behind and above.
 
 use glam::DVec3;
-use raypencil_report::{Anchor, Colour, Drawing, INK, SOFT, Scale};
+use raypencil_report::{Anchor, Colour, Drawing, INK, SOFT, Scale, axis_from_offset, widest};
 use raypencil_rover::{ElevationMap, GridPoint};
 
 use crate::figures::elevation_key::draw_elevation_key;
@@ -116,7 +116,10 @@ pub(super) fn relief(map: &ElevationMap) -> Drawing {
 fn draw_base(drawing: &mut Drawing, from: DVec3, to: DVec3, page: impl Fn(DVec3) -> [f64; 2]) {
     let along_x = |share: f64, y: f64| page(DVec3::new(from.x + share * (to.x - from.x), y, from.z));
     let along_y = |share: f64, x: f64| page(DVec3::new(x, from.y + share * (to.y - from.y), from.z));
-    let (columns, rows) = (Scale::linear(from.x, to.x).ticks(8), Scale::linear(from.y, to.y).ticks(8));
+    let (columns, name_of_x) = axis_from_offset("x", "m", [from.x, to.x], 8);
+    let (rows, name_of_y) = axis_from_offset("y", "m", [from.y, to.y], 8);
+    // The labels of x run away from their side: its name stands beyond them.
+    let beyond_labels = 26.0 + widest(&columns).max(30.0);
     for tick in &columns {
         drawing.line(vec![along_x(tick.at, from.y), along_x(tick.at, to.y)], GRID_COLOUR, 0.6);
     }
@@ -147,9 +150,9 @@ fn draw_base(drawing: &mut Drawing, from: DVec3, to: DVec3, page: impl Fn(DVec3)
     // The name of each axis runs along its side.
     let turn = |a: [f64; 2], b: [f64; 2]| libm::atan2(b[1] - a[1], b[0] - a[0]).to_degrees();
     let (near, far) = (along_x(0.0, from.y), along_x(1.0, from.y));
-    let [x, y] = beyond(along_x(0.5, to.y), along_x(0.5, from.y), 56.0);
-    drawing.turned_text([x, y], "x, m", Anchor::Middle, INK, turn(near, far));
+    let [x, y] = beyond(along_x(0.5, to.y), along_x(0.5, from.y), beyond_labels);
+    drawing.turned_text([x, y], name_of_x, Anchor::Middle, INK, turn(near, far));
     let (left, right) = (along_y(1.0, from.x), along_y(0.0, from.x));
     let [x, y] = beyond(along_y(0.5, to.x), along_y(0.5, from.x), 48.0);
-    drawing.turned_text([x, y], "y, m", Anchor::Middle, INK, turn(left, right));
+    drawing.turned_text([x, y], name_of_y, Anchor::Middle, INK, turn(left, right));
 }

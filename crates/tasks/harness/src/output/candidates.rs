@@ -220,12 +220,20 @@ fn radiance(scoreboard: &Scoreboard) -> Grid {
 
 /// The listed misses of each candidate that has any.
 pub(crate) fn all_misses(validation: &Validation) -> Vec<DefectGroup> {
-    let wrong = validation.candidates().iter().filter(|report| report.wrong_rays() > 0);
-    wrong.map(|report| misses(&validation.subject, report)).collect()
+    let of_candidate = |report: &CandidateReport| {
+        let of_sensors = report.check.of(Class::Defect) + report.check.of(Class::Undecided) > 0;
+        let of_sensors = of_sensors.then(|| misses(&validation.subject, report));
+        let of_sets = report.ray_sets.iter().filter_map(|set| set.bundle().group()).map(|group| {
+            let title = format!("Candidate {}, {}", report.candidate.name, group.title);
+            DefectGroup { title, ..group }
+        });
+        of_sensors.into_iter().chain(of_sets).collect::<Vec<_>>()
+    };
+    validation.candidates().iter().flat_map(of_candidate).collect()
 }
 
 fn misses(subject: &Subject, report: &CandidateReport) -> DefectGroup {
-    let total = report.wrong_rays();
+    let total = report.check.of(Class::Defect) + report.check.of(Class::Undecided);
     let lines: Vec<DefectLine> = report
         .misses()
         .take(MAX_LISTED)
@@ -261,13 +269,22 @@ pub(crate) fn typed(validation: &Validation) -> String {
 
 /// Names of what a candidate does not give.
 pub(crate) fn names_not_given(report: &CandidateReport) -> Vec<String> {
-    items_not_given(&report.check).into_iter().map(|(item, _)| name_of(item)).collect()
+    let of_sensors = items_not_given(&report.check).into_iter().map(|(item, _)| name_of(item));
+    let sets = report.ray_sets.iter().filter(|set| set.checked.is_none());
+    of_sensors.chain(sets.map(|set| format!("rays/{}", set.name))).collect()
 }
 
 /// The mistakes that explain why candidates are wrong, a sentence for each that has any.
 pub(crate) fn whys(validation: &Validation) -> impl Iterator<Item = String> {
-    validation.candidates().iter().filter_map(|CandidateReport { candidate, diagnosis, .. }| {
-        Some(format!("Why {} is wrong: {}.", candidate.name, diagnosis.as_ref()?.sentence()))
+    validation.candidates().iter().flat_map(|report| {
+        let name = &report.candidate.name;
+        let of_sensors = report.diagnosis.as_ref();
+        let of_sensors =
+            of_sensors.map(|diagnosis| format!("Why {name} is wrong: {}.", diagnosis.sentence()));
+        let of_sets = report.given_sets().filter_map(|(set, checked)| {
+            Some(format!("Why {name} is wrong about rays {set}: {}.", checked.why.as_ref()?))
+        });
+        of_sensors.into_iter().chain(of_sets).collect::<Vec<_>>()
     })
 }
 
@@ -278,7 +295,7 @@ pub(crate) fn line(report: &CandidateReport) -> String {
         "{}: {} of {} rays wrong{}",
         report.candidate.name,
         count(report.wrong_rays()),
-        count(report.check.compared()),
+        count(report.compared()),
         coarse.map_or(String::new(), |coarse| format!(" at {coarse}"))
     );
     let of = |kind: &str, fit: usize, all: usize| (all > 0).then(|| format!("{fit} of {all} {kind}"));

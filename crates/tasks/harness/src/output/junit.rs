@@ -82,7 +82,10 @@ fn candidate_suite(validation: &Validation, report: &CandidateReport) -> JunitSu
     let radiance = report.radiance.iter().map(|map| {
         (format!("radiance of {} rays, beam {}", map.sensor, map.beam), map.wrong == 0, "radiance is wrong")
     });
-    for (case, fits, message) in images.chain(radiance) {
+    let sets = report.given_sets().map(|(name, set)| {
+        (format!("rays {name}"), set.passes(), "rays are answered wrongly, or none hits anything")
+    });
+    for (case, fits, message) in images.chain(radiance).chain(sets) {
         let class = format!("{}.{name}", subject.name);
         let case = if fits { JunitCase::passed(case) } else { JunitCase::failed(case, "defect", message) };
         suite.push(case.with_class(class));

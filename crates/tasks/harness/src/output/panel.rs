@@ -2,7 +2,7 @@
 
 use raypencil_diagnosis::Diagnosis;
 use raypencil_judge::{Check, Class, Item, ItemTally, ListedDefect, Recorded, key_of, unit_of};
-use raypencil_pack::{not_given, rays_not_given};
+use raypencil_pack::{BundleFindings, not_given, rays_not_given};
 use raypencil_scene_io::{Subject, probe_command};
 use serde::Serialize;
 use serde_json::Value;
@@ -10,6 +10,7 @@ use serde_json::Value;
 use crate::monte_carlo::{ImageComparison, Z_TEST_LIMITS};
 use crate::output::candidates::{MAX_LISTED, miss_folder, wrong};
 use crate::radiance::RadianceComparison;
+use crate::ray_set_packs::CheckedRaySet;
 use crate::validation::Validation;
 
 /// The scoreboard in `summary.json`, under the key `panel`.
@@ -33,6 +34,8 @@ struct CheckSummary {
     quantities: Vec<ItemSummary>,
     images: Vec<ImageSummary>,
     radiance: Vec<RadianceSummary>,
+    /// A candidate's sets of rays, as bundles of `check.json`.
+    ray_sets: Vec<Value>,
     misses: Vec<Value>,
     diagnosis: Option<Value>,
 }
@@ -101,6 +104,17 @@ pub(crate) fn scoreboard_summary(validation: &Validation) -> Option<ScoreboardSu
         let mut summary = check_summary(subject, name, &report.check, recorded);
         summary.is_candidate = true;
         summary.passes = report.passes();
+        let bundles: Vec<BundleFindings> = report.ray_sets.iter().map(CheckedRaySet::bundle).collect();
+        for bundle in &bundles {
+            let of = |class: Class| bundle.by_class[class as usize];
+            summary.compared += bundle.compared();
+            summary.agree += of(Class::Agree);
+            summary.tie += of(Class::Tie);
+            summary.rounding += of(Class::Rounding);
+            summary.wrong += of(Class::Defect) + of(Class::Undecided);
+            summary.not_given += bundle.not_compared;
+        }
+        summary.ray_sets = bundles.iter().map(BundleFindings::to_json).collect();
         summary.diagnosis = report.diagnosis.as_ref().map(Diagnosis::to_json);
         summary.images = report.images.iter().map(image_summary).collect();
         summary.radiance = report.radiance.iter().map(radiance_summary).collect();
@@ -145,6 +159,7 @@ fn check_summary(subject: &Subject, name: &str, check: &Check, recorded: Option<
         quantities: check.totals().into_iter().map(of_item).collect(),
         images: Vec::new(),
         radiance: Vec::new(),
+        ray_sets: Vec::new(),
         misses: Vec::new(),
         diagnosis: None,
     }

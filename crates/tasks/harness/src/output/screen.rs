@@ -332,7 +332,11 @@ fn worst_defects(validation: &Validation, lines_of_warnings: usize, room: Room) 
         let command = probe_command(&validation.subject, defect.place);
         DefectLine { place, quantity, words, command, ..DefectLine::default() }
     };
-    of_renderers.chain(of_candidates.take(MAX_CANDIDATE_DEFECTS)).map(line).collect()
+    let of_sets = validation.candidates().iter().flat_map(|report| {
+        report.ray_sets.iter().filter_map(|set| Some(set.bundle().listed.first()?.line.clone()))
+    });
+    let of_candidates: Vec<DefectLine> = of_candidates.map(line).chain(of_sets).collect();
+    of_renderers.map(line).chain(of_candidates.into_iter().take(MAX_CANDIDATE_DEFECTS)).collect()
 }
 
 /// Joins `parts` with commas on lines that begin with `head` or as many blanks. Parts beyond `max_lines` lines are

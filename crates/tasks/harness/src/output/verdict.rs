@@ -119,7 +119,7 @@ fn candidates_headline(candidates: &[CandidateReport]) -> Option<String> {
         ([one], []) => {
             let coarse = one.candidate.recorded.coarseness();
             let coarse = coarse.map_or(String::new(), |coarse| format!(" at {coarse}"));
-            let rays = counted(one.check.compared(), "ray", "rays");
+            let rays = counted(one.compared(), "ray", "rays");
             format!("candidate {} agrees on {rays}{coarse}", name(one))
         }
         (all, []) => format!("{} candidates agree", all.len()),
@@ -135,12 +135,12 @@ fn candidates_headline(candidates: &[CandidateReport]) -> Option<String> {
 
 /// What a candidate is wrong on, in words.
 fn wrong_parts(report: &CandidateReport) -> String {
-    if report.check.compared() == 0 {
+    if report.compared() == 0 {
         return "everything: nothing of it could be compared".into();
     }
     let mut parts = Vec::new();
     if report.wrong_rays() > 0 {
-        let compared = counted(report.check.compared(), "ray", "rays");
+        let compared = counted(report.compared(), "ray", "rays");
         parts.push(format!("{} of {compared}", count(report.wrong_rays())));
     }
     for (wrong, all, one, many) in [
@@ -151,6 +151,8 @@ fn wrong_parts(report: &CandidateReport) -> String {
             parts.push(format!("{wrong} of {}", counted(all as u64, one, many)));
         }
     }
+    // That the candidate is right about them proves nothing, by the rule of `check`.
+    parts.extend(report.idle_sets().map(|name| format!("rays {name}, of which none hits anything")));
     parts.join(", ")
 }
 
@@ -214,8 +216,8 @@ pub(crate) fn explanation(validation: &Validation) -> String {
     }
     for report in validation.candidates().iter().filter(|report| !report.passes()) {
         text.push_str(&format!(" Candidate {} is wrong on {}", report.candidate.name, wrong_parts(report)));
-        match report.misses().next() {
-            Some(worst) => text.push_str(&format!("; the worst: {}.", told(worst))),
+        match report.misses().next().map(told).or_else(|| told_of_sets(report)) {
+            Some(worst) => text.push_str(&format!("; the worst: {worst}.")),
             None => text.push('.'),
         }
     }
@@ -225,6 +227,12 @@ pub(crate) fn explanation(validation: &Validation) -> String {
 /// A defect in one sentence.
 pub(crate) fn told(defect: &ListedDefect) -> String {
     format!("{}, {}: {}", defect.place, name_of(defect.item), defect.words())
+}
+
+/// The first wrong ray of a set in one sentence, if one is.
+fn told_of_sets(report: &CandidateReport) -> Option<String> {
+    let listed = report.ray_sets.iter().flat_map(|set| set.bundle().listed);
+    listed.map(|wrong| format!("{}, {}: {}", wrong.line.place, wrong.line.quantity, wrong.line.words)).next()
 }
 
 /// The listed defects of the renderers, pair by pair.

@@ -2,7 +2,7 @@
 //! camera looks at.
 
 use glam::DVec3;
-use raypencil_report::{Anchor, Colour, Drawing, INK, SOFT, Scale, draw_axes};
+use raypencil_report::{Anchor, Colour, Drawing, INK, SOFT, axis_from_offset, draw_axes};
 use raypencil_scene::{Progress, Renderer, Request, Scene, SensorMap};
 use raypencil_tracer::Tracer;
 
@@ -34,8 +34,8 @@ struct View {
 }
 
 const VIEWS: [View; 2] = [
-    View { name: "from above", axes: [0, 1], names: ["x, m", "y, m"] },
-    View { name: "from the right side", axes: [0, 2], names: ["x, m", "z, m"] },
+    View { name: "from above", axes: [0, 1], names: ["x", "y"] },
+    View { name: "from the right side", axes: [0, 2], names: ["x", "z"] },
 ];
 
 /// What is drawn of a sensor: its name, its place, and the points that its rays meet, in the global frame.
@@ -129,11 +129,10 @@ fn draw_view(drawing: &mut Drawing, view: &View, at: [f64; 2], scene: &Scene, se
     }
     drawing.text([at[0], at[1] - 12.0], view.name, Anchor::Start, INK);
     // Ticks of rows are counted from above.
-    let mut rows = Scale::linear(y[0], y[1]).ticks(6);
+    let (columns, across) = axis_from_offset(view.names[0], "m", x, 8);
+    let (mut rows, upwards) = axis_from_offset(view.names[1], "m", y, 6);
     rows.iter_mut().for_each(|tick| tick.at = 1.0 - tick.at);
-    draw_axes(drawing, at, VIEW_PX, Scale::linear(x[0], x[1]).ticks(8), rows, ["", ""]);
-    drawing.text([at[0] + 0.5 * VIEW_PX[0], at[1] + VIEW_PX[1] + 40.0], view.names[0], Anchor::Middle, INK);
-    drawing.turned_text([18.0, at[1] + 0.5 * VIEW_PX[1]], view.names[1], Anchor::Middle, INK, -90.0);
+    draw_axes(drawing, at, VIEW_PX, columns, rows, [&across, &upwards]);
 }
 
 /// The ground: each face that lies wholly in the view, or of a large ground a share of its vertices.

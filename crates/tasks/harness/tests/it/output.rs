@@ -390,8 +390,15 @@ fn with_wrong_ranges() -> Validation {
     let recorded = Recorded::of_output("mine", scene, &output, Precision::F64);
     let (images, radiance) = (Vec::new(), Vec::new());
     let declared = Default::default();
-    let candidate =
-        Candidate { name: "mine".into(), folder: "mine".into(), declared, recorded, images, radiance };
+    let candidate = Candidate {
+        name: "mine".into(),
+        folder: "mine".into(),
+        declared,
+        recorded,
+        images,
+        radiance,
+        ray_sets: vec![],
+    };
     validation.evaluate(vec![candidate], &Silent);
     validation
 }

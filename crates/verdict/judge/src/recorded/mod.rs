@@ -131,6 +131,17 @@ impl Recorded {
         Ok(channels)
     }
 
+    /// A recording that has no maps, of a program that answers sets of rays alone.
+    pub fn without_maps(folder: &Path, scene: &Scene, precision: Precision) -> Self {
+        Self {
+            name: name_of_folder(folder),
+            answers: Answers::none(scene),
+            storage: BTreeMap::new(),
+            unknown: Vec::new(),
+            precision,
+        }
+    }
+
     /// Takes the channels of a folder as a recording, which has the folder's name.
     ///
     /// # Errors

@@ -173,7 +173,8 @@ impl BundleFindings {
         self.by_class.iter().sum()
     }
 
-    pub(super) fn to_json(&self) -> Value {
+    /// The bundle for programs: `docs/formats/check.schema.json` has the keys.
+    pub fn to_json(&self) -> Value {
         json!({
             "name": self.name,
             "compared": self.compared(),
@@ -187,7 +188,7 @@ impl BundleFindings {
     }
 
     /// The listed rays below a title that counts all; `None` if nothing is wrong.
-    pub(super) fn group(&self) -> Option<DefectGroup> {
+    pub fn group(&self) -> Option<DefectGroup> {
         let total = wrong(&self.by_class);
         let lines: Vec<DefectLine> = self.listed.iter().map(|wrong| wrong.line.clone()).collect();
         let more = match total - total.min(lines.len() as u64) {

@@ -7,6 +7,9 @@ use raypencil_files::Fault;
 use crate::triangles::parts::{Parts, coordinate};
 use crate::triangles::text::{Lines, number, quoted, without_mark};
 
+/// Statements of other words that are told of a file without faces, at most.
+const MAX_TOLD_WORDS: usize = 4;
+
 /// Reads the vertices and the faces of a file.
 pub(super) fn read(file: &[u8]) -> Result<Parts, Fault> {
     let file = without_mark(file);
@@ -17,6 +20,7 @@ pub(super) fn read(file: &[u8]) -> Result<Parts, Fault> {
     let mut parts = Parts::default();
     let mut corners = Vec::new();
     let mut greatest = None;
+    let mut others: Vec<&[u8]> = Vec::new();
     for (line, statement) in Lines::joined_by_backslash(file) {
         let mut words = words(statement);
         let Some(keyword) = words.next() else { continue };
@@ -50,8 +54,16 @@ pub(super) fn read(file: &[u8]) -> Result<Parts, Fault> {
                 let expected = "a statement that starts with a letter, like `v 0 0 0`";
                 return Err(Fault::new(format!("line {line}"), quoted(Some(keyword)), expected));
             }
-            _ => {}
+            other => {
+                if others.len() < MAX_TOLD_WORDS && !others.contains(&other) {
+                    others.push(other);
+                }
+            }
         }
+    }
+    if !others.is_empty() {
+        let words: Vec<String> = others.into_iter().map(|word| quoted(Some(word))).collect();
+        parts.others = format!("its lines begin with {}", words.join(", "));
     }
     match (greatest, parts.vertices.len()) {
         (Some((corner, std::cmp::Reverse(line))), count) if corner as usize >= count => {

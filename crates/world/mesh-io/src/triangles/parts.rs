@@ -18,6 +18,8 @@ pub(super) struct Parts {
     pub(super) faces: Vec<[u32; 3]>,
     /// Polygon of each face; `None` as long as every polygon is one triangle.
     pub(super) polygons: Option<Vec<u32>>,
+    /// What a file without polygons holds beside its vertices, in words; empty: nothing is known of it.
+    pub(super) others: String,
     /// Number of polygons.
     count: u32,
 }
@@ -26,7 +28,7 @@ impl Parts {
     /// Vertices and faces of a file that has triangles only.
     pub(super) fn of_triangles(vertices: Vec<[f64; 3]>, faces: Vec<[u32; 3]>) -> Self {
         let count = faces.len() as u32;
-        Self { vertices, faces, polygons: None, count }
+        Self { vertices, faces, polygons: None, others: String::new(), count }
     }
 
     /// Adds a polygon of three or more corners as a fan around its first. Its vertices may follow.
@@ -100,7 +102,7 @@ impl Parts {
 pub(super) fn coordinate(number: f64, place: impl FnOnce() -> String) -> Result<f64, Fault> {
     match number.abs() <= MAX_COORDINATE {
         true => Ok(number),
-        false => Err(Fault::new(place(), number.to_string(), "a finite number within 1e30")),
+        false => Err(Fault::new(place(), format!("{number:?}"), "a finite number within 1e30")),
     }
 }
 

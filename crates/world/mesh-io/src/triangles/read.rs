@@ -28,6 +28,32 @@ pub struct TriangleFile {
     /// Digests of the files that were read: the file itself, then the buffers beside it; of a pair of NPY files the
     /// vertices, then the faces.
     pub digests: Vec<Sha256Digest>,
+    /// What a file without faces holds, in words; `None`: it has faces.
+    pub without_faces: Option<String>,
+}
+
+impl TriangleFile {
+    /// Refuses a file without any face, where rays are to meet something; `file` is its name in messages.
+    ///
+    /// ```
+    /// use raypencil_mesh_io::read_triangles;
+    ///
+    /// let folder = tempfile::tempdir()?;
+    /// let path = folder.path().join("words.obj");
+    /// std::fs::write(&path, "garbage in\n")?;
+    /// let error = read_triangles(&path)?.require_faces(&path).unwrap_err().to_string();
+    /// assert!(error.ends_with("no vertex and no face; its lines begin with \"garbage\"; expected at least one face"), "{error}");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Says what the file holds.
+    pub fn require_faces(&self, file: &Path) -> Result<(), FileError> {
+        match &self.without_faces {
+            None => Ok(()),
+            Some(found) => Err(FileError::Mesh(Fault::new("file", found, "at least one face").in_file(file))),
+        }
+    }
 }
 
 /// Loads the triangles of a file: GLB, glTF, STL, OBJ, PLY, or a pair of NPY files.
@@ -198,8 +224,17 @@ fn finished(
     digests: Vec<Sha256Digest>,
     is_gltf: bool,
 ) -> Result<TriangleFile, FileError> {
-    let Parts { vertices, faces, polygons, .. } = parts;
+    let Parts { vertices, faces, polygons, others, .. } = parts;
+    let without_faces = faces.is_empty().then(|| {
+        let vertices = match vertices.len() {
+            0 => "no vertex".to_string(),
+            1 => "1 vertex".to_string(),
+            count => format!("{count} vertices"),
+        };
+        let others = if others.is_empty() { others } else { format!("; {others}") };
+        format!("{vertices} and no face{others}")
+    });
     let triangles = Triangles::new(vertices, faces)
         .map_err(|source| FileError::Scene { origin: file.display().to_string(), source })?;
-    Ok(TriangleFile { triangles, polygons, polygon_facts, is_gltf, digests })
+    Ok(TriangleFile { triangles, polygons, polygon_facts, is_gltf, digests, without_faces })
 }

@@ -23,7 +23,9 @@ pub(super) fn read(file: &[u8]) -> Result<Parts, Fault> {
     let text = without_mark(without_zeros(file));
     let starts_as_text =
         text.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
-    match starts_as_text && !text.contains(&0) {
+    // A header of text and a number of faces that is 0: no facet fits into a text of this length.
+    let is_empty_binary = file.len() == HEADER_BYTES && claimed_faces(file) == Some(0);
+    match starts_as_text && !text.contains(&0) && !is_empty_binary {
         true => read_text(text),
         false => read_binary(file),
     }

@@ -178,7 +178,7 @@ impl<'a> Source<'a> {
 }
 
 /// Number in words: in powers of ten where decimals would be a long row of zeros.
-fn number_text(value: f64) -> String {
+pub(crate) fn number_text(value: f64) -> String {
     match value.abs() {
         size if size.is_finite() && size != 0.0 && !(1e-4..1e8).contains(&size) => format!("{value:e}"),
         _ => value.to_string(),

@@ -1,7 +1,8 @@
 //! Keys set outside of the file: as if they stood in it, and errors that name the setting.
 
 use raypencil_scene_io::{
-    LoadedScene, Overrides, SceneIoError, Setting, load, load_ray_scene, load_text, load_text_with,
+    LoadedScene, Overrides, SceneIoError, Setting, check_settings, load, load_ray_scene, load_text,
+    load_text_with,
 };
 
 use super::scenes::scenes;
@@ -73,12 +74,8 @@ fn a_setting_is_as_if_it_stood_in_the_file() {
             "version = 1\n[[beam]]\npitch_down_deg = 30\n[[beam]]\npitch_down_deg = 30\n[[beam]]\npitch_down_deg = 30\n\
              fan_deg = 90\n",
         ),
-        // Of two settings of one key the last holds.
-        (
-            "version = 1\n",
-            vec!["flux.model=radiometric", "flux.model=eq1"],
-            "version = 1\n[flux]\nmodel = \"eq1\"\n",
-        ),
+        // The same twice is no contradiction.
+        ("version = 1\n", vec!["flux.model=eq1", "flux.model=eq1"], "version = 1\n[flux]\nmodel = \"eq1\"\n"),
         (
             "version = 1\n[vehicle]\nposition_m = [1, 2, 3]\n",
             vec!["vehicle.position_m.1=-2"],
@@ -189,4 +186,67 @@ fn a_key_of_many_parts_is_refused_before_it_becomes_tables() {
         assert!(error.contains(&format!("the key has {parts} parts; expected at most 16")), "{parts}");
     }
     assert!(Setting::new(&["a"; 16].join("."), "1").is_ok());
+}
+
+#[test]
+fn settings_that_contradict_one_another_are_refused_with_both_named() {
+    for [earlier, later] in [
+        // One key twice; one for all beams and one for one of them, in both orders; a table and a key in it.
+        ["flux.model=radiometric", "flux.model=eq1"],
+        ["beam.0.pitch_down_deg=20", "beam.pitch_down_deg=25"],
+        ["beam.pitch_down_deg=25", "beam.1.pitch_down_deg=20"],
+        ["camera.filter={ centre_nm = 600, width_nm = 10 }", "camera.filter.index=2"],
+        ["vehicle.position_m.1=2", "vehicle.position_m=[0, 0]"],
+        ["beam.0.position_m=[0, 0, 1]", "beam.position_m.2=2"],
+        // Two descriptions of the image, of which one would go without a word; two grounds; what belongs to another ground.
+        ["camera.field_of_view_deg=60", "camera.focal_length_mm=8"],
+        ["camera.principal_point_px=[3, 4]", "camera.field_of_view_deg=60"],
+        ["camera.field_of_view_deg=60", "camera.principal_point_px=[3, 4]"],
+        ["terrain.builtin=facets", "terrain.file=a.obj"],
+        ["terrain.up=y", "terrain.builtin=facets"],
+    ] {
+        let text = "version = 1\n[[beam]]\n[[beam]]\n";
+        let message = set(text, &["camera.pitch_down_deg=3", earlier, later]).unwrap_err().to_string();
+        assert!(message.starts_with(&format!("set {later}: ")), "{message}");
+        assert!(message.contains(earlier) && message.ends_with("; expected one of the two"), "{message}");
+    }
+    // Different beams, different keys: none overwrites another.
+    let text = "version = 1\n[[beam]]\n[[beam]]\n";
+    set(
+        text,
+        &["beam.0.fan_deg=60", "beam.1.fan_deg=70", "beam.pitch_down_deg=20", "camera.pitch_down_deg=20"],
+    )
+    .unwrap();
+    // Whatever takes settings refuses them.
+    let pair = ["camera.field_of_view_deg=60", "camera.focal_length_mm=8"];
+    assert!(refused("pyramids", &pair).contains(pair[0]));
+    let settings = with(&pair).settings;
+    assert!(check_settings("pyramids", &settings).unwrap_err().to_string().contains(pair[0]));
+    // Of changes that come one after the other the later holds.
+    let later: Vec<Setting> = settings.into_iter().map(Setting::replacing).collect();
+    let scene = load("pyramids", &Overrides { settings: later, ..Overrides::default() }).unwrap().scene;
+    assert_eq!(scene.camera().sensor.focal_length, 0.008);
+}
+
+#[test]
+fn a_number_given_as_an_option_and_as_a_setting_is_refused() {
+    let message = |overrides: Overrides, setting: &str| {
+        let overrides = Overrides { settings: with(&[setting]).settings, ..overrides };
+        load("pyramids", &overrides).unwrap_err().to_string()
+    };
+    let plain = Overrides::default;
+    for (overrides, name, setting) in [
+        (Overrides { at: Some([1.0, 2.0]), ..plain() }, "--at", "vehicle.position_m=[0, 0]"),
+        (Overrides { heading_deg: Some(9.0), ..plain() }, "--heading", "vehicle.heading_deg=8"),
+        (Overrides { fan_deg: Some(9.0), ..plain() }, "--fan", "beam.1.fan_deg=8"),
+        (Overrides { thickness_mm: Some(9.0), ..plain() }, "--thickness", "beam.thickness_mm=8"),
+        (
+            Overrides { flux_model: Some(raypencil_scene::FluxModel::Eq1), ..plain() },
+            "--flux",
+            "flux.model=eq1",
+        ),
+    ] {
+        let message = message(overrides, setting);
+        assert!(message.contains(setting) && message.contains(name), "{message}");
+    }
 }

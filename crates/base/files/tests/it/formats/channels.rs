@@ -4,10 +4,13 @@ use ::exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image as ExrImage, Layer, LayerAttributes, SmallVec,
     WritableImage, f16,
 };
+use png::{BitDepth, ColorType};
 use std::path::{Path, PathBuf};
 
+use super::pictures::png;
 use raypencil_files::{
-    Channels, ExrMap, Limits, Raster, Storage, Values, read_channels, write_exr, write_npy, write_pfm,
+    Channels, ExrMap, Limits, Raster, Storage, Values, add_ray_sets, read_channels, write_exr, write_npy,
+    write_npy_numbers, write_pfm,
 };
 use raypencil_scene::Image;
 
@@ -55,6 +58,11 @@ impl Folder {
         read_channels(self.0.path(), &Limits::default())
             .map_err(|error| error.to_string().replace(&start, ""))
     }
+}
+
+/// A picture of one pixel.
+fn gray() -> Vec<u8> {
+    png([1, 1], ColorType::Grayscale, BitDepth::Eight, &[7])
 }
 
 fn single(cells: &[f32]) -> Raster {
@@ -272,4 +280,65 @@ fn limits_hold_for_all_files_together() {
     assert!(read(3 << 17).is_ok());
     let message = read((3 << 17) - 1).unwrap_err().to_string();
     assert!(message.contains("c.npy: ") && message.contains("131071 bytes"), "{message}");
+}
+
+#[test]
+fn a_picture_beside_arrays_is_a_channel_only_by_the_name_of_a_map() {
+    let folder = Folder::new();
+    let picture = |name: &str| {
+        std::fs::write(folder.path(name), gray()).unwrap();
+    };
+    // A folder of pictures alone is a recording.
+    picture("photos/preview.png");
+    assert_eq!(folder.read().unwrap().by_key.keys().collect::<Vec<_>>(), ["photos/preview"]);
+    // Beside an array, in its own folder, a preview shows what the array says; a depth image is a map.
+    folder.npy("camera/P.npy", &[1.0]);
+    picture("camera/preview.png");
+    picture("camera/depth.Z.png");
+    let read = folder.read().unwrap();
+    let keys: Vec<&String> = read.by_key.keys().collect();
+    assert_eq!(keys, ["camera/P", "camera/depth.Z", "photos/preview"]);
+    assert!(!read.files.iter().any(|file| file.ends_with("camera/preview.png")));
+}
+
+#[test]
+fn a_folder_that_is_a_set_of_rays_is_read_whatever_the_dimensions_of_its_arrays() {
+    let folder = Folder::new();
+    let array = |name: &str, shape: &[u64]| {
+        let numbers: Vec<f64> = (0..shape.iter().product()).map(|k| f64::from(k as u32)).collect();
+        write_npy_numbers(folder.path(name), shape, &numbers).unwrap();
+    };
+    array("t.npy", &[2, 4]);
+    array("point.npy", &[2, 4, 3]);
+    array("across.npy", &[2, 4, 2, 3]);
+    array("all.t.npy", &[5]);
+    // No face: by one program -1, by another 4294967295.
+    write_npy_numbers(folder.path("face.npy"), &[2, 4], &[-1, 7, 7, 7, 7, 7, 7, 7_i32]).unwrap();
+    std::fs::write(folder.path("top.png"), gray()).unwrap();
+    let read = folder.read().unwrap();
+    let size = |key: &str| read.by_key[key].values.size();
+    assert_eq!(
+        [size("t"), size("point.Z"), size("across.1.Y"), size("all.t")],
+        [(4, 2), (4, 2), (4, 2), (5, 1)]
+    );
+    // Ray 3, second vector, second number: 6 * 3 + 3 + 1.
+    assert_eq!(read.by_key["across.1.Y"].values.real(3), 22.0);
+    assert_eq!(read.by_key["face"].values.real(0), 4294967295.0);
+    assert_eq!(read.by_key.len(), 1 + 3 + 6 + 1 + 1, "{:?}", read.by_key.keys());
+    // A flat set: one row of its rays.
+    let flat = Folder::new();
+    write_npy_numbers(flat.path("t.npy"), &[3], &[1.0, 2.0, 3.0]).unwrap();
+    write_npy_numbers(flat.path("point.npy"), &[3, 3], &[0.5; 9]).unwrap();
+    let read = flat.read().unwrap();
+    assert_eq!([read.by_key["t"].values.size(), read.by_key["point.X"].values.size()], [(3, 1), (3, 1)]);
+}
+
+#[test]
+fn answers_to_sets_of_rays_alone_are_a_recording() {
+    let folder = Folder::new();
+    write_npy_numbers(folder.path("rays/mast/t.npy"), &[3], &[1.0, 2.0, 3.0]).unwrap();
+    let mut read = folder.read().unwrap();
+    assert!(read.by_key.is_empty());
+    add_ray_sets(&mut read, folder.0.path(), &Limits::default()).unwrap();
+    assert_eq!(read.by_key["rays/mast/t"].values.size(), (3, 1));
 }

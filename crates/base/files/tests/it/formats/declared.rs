@@ -270,7 +270,10 @@ fn pictures_for_people_are_passed_over_where_maps_are_asked_for() {
     };
     let names = ["depth.Z".to_string()];
     assert_eq!(read(&Declared::default(), Some(&names)), Ok(1));
-    assert!(read(&Declared::default(), None).unwrap_err().contains("preview.png: header"));
+    // Where no scene says which maps there are, one beside arrays is passed over as well, and one by itself is not.
+    assert_eq!(read(&Declared::default(), None), Ok(1));
+    picture("photos/preview.png", b"not even a picture");
+    assert!(read(&Declared::default(), None).unwrap_err().contains("photos/preview.png: header"));
     assert!(read(&channels(&["depth.Z=preview"]), Some(&names)).unwrap_err().contains("preview.png: header"));
     picture("camera/depth.Z.png", b"not even a picture");
     assert!(read(&Declared::default(), Some(&names)).unwrap_err().contains("depth.Z.png: header"));

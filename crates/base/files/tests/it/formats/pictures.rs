@@ -8,7 +8,7 @@ use raypencil_files::{Array, Limits, Storage, Values, png_from_bytes, tiff_from_
 use tiff::encoder::{TiffEncoder, colortype};
 use tiff::tags::Tag;
 
-fn png([width, height]: [u32; 2], colour: ColorType, depth: BitDepth, bytes: &[u8]) -> Vec<u8> {
+pub(super) fn png([width, height]: [u32; 2], colour: ColorType, depth: BitDepth, bytes: &[u8]) -> Vec<u8> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_color(colour);

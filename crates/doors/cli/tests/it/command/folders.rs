@@ -147,14 +147,12 @@ fn results_of_a_sweep_and_of_a_campaign_are_not_replaced_unasked() {
         let pack = ["pack", "scene.toml", "--no-bench", "-o", out].to_vec();
         [sweep, campaign, validate, pack]
     };
-    let held = ["results of a sweep of scene.toml", "results of a campaign", "on ", "a pack of scene"];
+    let held = ["results of a sweep of scene.toml", "results of a campaign", "results of `validate` on "];
     for first in 0..3 {
         let out = ["sweep", "campaign", "validate"][first];
         screen(folder, &into(out)[first], 0);
         for other in (0..4).filter(|other| *other != first) {
-            let is_list = first == 2 && other == 3;
-            let words =
-                [if is_list { "results of " } else { held[first] }, "expected another folder, or --force"];
+            let words = [held[first], "expected another folder, or --force"];
             assert_trouble(&raypencil(folder, &into(out)[other]), &words);
         }
         // The same again is no other.
@@ -225,4 +223,73 @@ fn a_folder_that_cannot_be_written_is_found_before_anything_is_computed() {
     assert_trouble(&raypencil(folder, &line), &["scene.toml/out: cannot create the folder"]);
     let line = ["check", "nowhere", "nowhere", "-o", "scene.toml/out"];
     assert_trouble(&raypencil(folder, &line), &["scene.toml/out: cannot create the folder"]);
+}
+
+/// Files below a folder, by their paths in it.
+fn all_files(folder: &Path) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut folders = vec![folder.to_path_buf()];
+    while let Some(inner) = folders.pop() {
+        for entry in fs::read_dir(inner).unwrap().map(|entry| entry.unwrap().path()) {
+            match entry.is_dir() {
+                true => folders.push(entry),
+                false => found.push(entry.strip_prefix(folder).unwrap().display().to_string()),
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+#[test]
+fn results_of_another_command_on_the_same_scene_are_not_replaced_unasked() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    scene(folder, 1);
+    fs::write(folder.join("g.obj"), "v -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n").unwrap();
+    screen(folder, &["pack", "scene.toml", "--no-bench", "-o", "pack"], 0);
+    screen(folder, &["render", "scene.toml", "--with", "tracer", "-o", "maps"], 0);
+    let sweep =
+        |task| ["sweep", "scene.toml", "--set", "camera.pitch_down_deg=30", "--do", task, "-o"].to_vec();
+    let commands = [
+        vec!["validate", "scene.toml", "-o"],
+        vec!["render", "scene.toml", "--with", "tracer", "-o"],
+        vec!["drive", "scene.toml", "--to", "0.3,0", "--record", "points", "-o"],
+        vec!["cast", "g.obj", "--ray", "0,0,1,0,0,-1", "-o"],
+        vec!["check", "pack", "maps", "-o"],
+        vec!["diff", "maps", "maps", "-o"],
+        sweep("validate"),
+        sweep("render"),
+    ];
+    for (index, command) in commands.iter().enumerate() {
+        let out = format!("out{index}");
+        let line = |command: &Vec<&str>| -> Vec<String> {
+            command.iter().map(ToString::to_string).chain([out.clone()]).collect()
+        };
+        let run = |line: &[String]| raypencil(folder, &line.iter().map(String::as_str).collect::<Vec<_>>());
+        assert_eq!(run(&line(command)).status.code(), Some(0), "{command:?}");
+        let before = all_files(&folder.join(&out));
+        // The next command, and the one after: each pair of neighbours, and of some others.
+        for step in [1, 2, 5] {
+            let other = line(&commands[(index + step) % commands.len()]);
+            assert_trouble(&run(&other), &["it has results of ", "expected another folder, or --force"]);
+        }
+        let replay =
+            ["campaign", "replay", "--seed", "1", "--terrain", "0", "--part", "lattice", "-o", out.as_str()];
+        assert_trouble(&raypencil(folder, &replay), &["it has results of "]);
+        assert_eq!(all_files(&folder.join(&out)), before, "nothing goes");
+        // The same again is as it was.
+        assert_eq!(run(&line(command)).status.code(), Some(0), "{command:?}");
+        assert_eq!(all_files(&folder.join(&out)), before);
+        let forced = [line(&commands[(index + 1) % commands.len()]), vec!["--force".into()]].concat();
+        assert_eq!(run(&forced).status.code(), Some(0), "{forced:?}");
+    }
+    // Parts of a sweep are not joined among results of another command, nor one of them twice.
+    let merge = ["sweep", "merge", "out7", "-o", "out3"];
+    screen(folder, &[&sweep("render")[..], &["out7", "--force"]].concat(), 0);
+    screen(folder, &["validate", "scene.toml", "-o", "out3", "--force"], 0);
+    assert_trouble(&raypencil(folder, &merge), &["out3: it has results of `validate` on "]);
+    let twice = ["sweep", "merge", "out7", "./out7", "-o", "merged"];
+    assert_trouble(&raypencil(folder, &twice), &["out7 is given twice; expected each folder once"]);
+    assert!(!folder.join("merged").exists());
 }

@@ -154,6 +154,85 @@ fn a_pack_has_the_sets_and_a_check_rules_on_them() {
 }
 
 #[test]
+fn validate_judges_the_sets_of_a_candidate_as_check_does() {
+    let folder = folder(SCENE);
+    let at = folder.path();
+    screen(at, &["pack", "lidar.toml", "--no-bench", "-o", "pack"], 0);
+    screen(at, &["render", "lidar.toml", "--with", "tracer", "-o", "traced"], 0);
+    let validated = ["validate", "lidar.toml", "--candidate", "traced", "-o", "out"];
+    let shown = screen(at, &validated, 0);
+    // 16 x 12 pixels, 1 ray and 12 x 8.
+    assert!(shown.contains("candidate traced agrees on 289 rays"), "{shown}");
+    lengthen_a_ray(&at.join("traced"));
+    let checked = screen(at, &["check", "pack", "traced"], 1);
+    let shown = screen(at, &validated, 1);
+    assert!(shown.contains("Candidate traced is wrong on 1 of 289 rays"), "{shown}");
+    // The place and the words of the wrong ray are those of `check`.
+    let words = |shown: &str| {
+        let line =
+            shown.lines().find(|line| line.trim_start().starts_with("rays/front ") && line.contains(" t "));
+        line.or(shown.lines().find(|line| line.contains("first hit:"))).map(str::trim).map(String::from)
+    };
+    assert!(words(&shown).is_some() && words(&checked).is_some(), "{shown}\n{checked}");
+    let summary = fs::read_to_string(at.join("out/summary.json")).expect("a summary");
+    let summary: Value = serde_json::from_str(&summary).expect("JSON");
+    let schema = include_str!("../../../../../../docs/formats/summary.schema.json");
+    let schema: Value = serde_json::from_str(schema).expect("JSON");
+    assert_eq!(schema_faults(&schema, &summary), Vec::<String>::new());
+    let theirs = summary["panel"]["renderers"].as_array().and_then(|all| all.last()).expect("a candidate");
+    assert_eq!(
+        (&theirs["compared"], &theirs["wrong"], &theirs["passes"]),
+        (&289.into(), &1.into(), &false.into())
+    );
+    let document: Value =
+        serde_json::from_str(&screen(at, &["--json", "check", "pack", "traced"], 1)).expect("JSON");
+    let bundle = document["bundles"].as_array().and_then(|all| all.last()).expect("a bundle");
+    assert_eq!(theirs["ray_sets"][1]["classes"], bundle["classes"]);
+    assert_eq!(theirs["ray_sets"][1]["quantities"][0]["classes"], bundle["quantities"][0]["classes"]);
+    for file in ["summary.md", "junit.xml", "report.html"] {
+        let text = fs::read_to_string(at.join("out").join(file)).expect("a file");
+        assert!(text.contains("rays/front") || text.contains("rays front"), "{file}");
+    }
+    // The command of the wrong ray shows it, by a pack that it makes itself.
+    let command = theirs["ray_sets"][1]["worst_defects"][0]["command"].as_str().expect("a command");
+    let (first, then) = command.split_once(" && ").expect("two commands");
+    for line in [first.replace("-o pack", "-o again"), then.replace("pack/rays", "again/rays")] {
+        let words: Vec<&str> = line.split(' ').skip(1).collect();
+        screen(at, &words, 0);
+    }
+    // A set of another shape is refused before anything is rendered, and one that is not there is told.
+    write_npy_numbers(at.join("traced/rays/front/t.npy"), &[5], &[1.0; 5]).expect("a file");
+    assert_trouble(&raypencil(at, &validated), &["traced/rays/front/t.npy: shape: [5]; expected [8, 12]"]);
+    fs::remove_dir_all(at.join("traced/rays/front")).expect("a folder");
+    let shown = screen(at, &validated, 0);
+    assert!(shown.contains("agrees on 193 rays") && shown.contains("not given: rays/front"), "{shown}");
+}
+
+#[test]
+fn a_candidate_of_sets_of_rays_alone_is_judged() {
+    let folder = folder(SCENE);
+    let at = folder.path();
+    screen(at, &["pack", "lidar.toml", "--no-bench", "-o", "pack"], 0);
+    screen(at, &["render", "lidar.toml", "--with", "tracer", "-o", "traced"], 0);
+    fs::create_dir_all(at.join("mine/rays/front")).expect("a folder");
+    fs::copy(at.join("traced/rays/front/t.npy"), at.join("mine/rays/front/t.npy")).expect("a file");
+    let shown = screen(at, &["check", "pack", "mine"], 0);
+    assert!(shown.contains("96 rays agree") && shown.contains("not given: rays/down"), "{shown}");
+    let shown = screen(at, &["validate", "lidar.toml", "--candidate", "mine", "-o", "out"], 0);
+    assert!(shown.contains("candidate mine agrees on 96 rays"), "{shown}");
+    let shown = screen(at, &["diff", "mine", "traced", "--shared-only"], 0);
+    assert!(shown.contains("1 channel"), "{shown}");
+    // Of a pack without sets, and of sets of other names, nothing is given.
+    fs::rename(at.join("mine/rays/front"), at.join("mine/rays/other")).expect("a folder");
+    assert_trouble(
+        &raypencil(at, &["validate", "lidar.toml", "--candidate", "mine"]),
+        &["mine: folder: no maps"],
+    );
+    let pyramids = super::check::pack("pyramids").to_string_lossy().into_owned();
+    assert_trouble(&raypencil(at, &["check", &pyramids, "mine"]), &["mine: folder: no maps"]);
+}
+
+#[test]
 fn diff_compares_the_sets_too() {
     let folder = folder(SCENE);
     let at = folder.path();
@@ -167,6 +246,31 @@ fn diff_compares_the_sets_too() {
     assert!(shown.contains("rays/front/range") && shown.contains("rays/front/t "), "{shown}");
     // The scene's sensors are ruled on; sets are compared all the same.
     screen(at, &["diff", "a", "b", "--scene", "lidar.toml"], 1);
+    // A set by itself: its arrays, not its pictures, which two programs draw in other colours and sizes.
+    assert!(at.join("a/rays/front/top.png").is_file());
+    fs::write(at.join("b/rays/front/top.png"), fs::read(at.join("b/rays/front/range.png")).expect("a file"))
+        .expect("a file");
+    screen(at, &["diff", "a/rays/front", "a/rays/front"], 0);
+    let shown = screen(at, &["diff", "a/rays/front", "b/rays/front", "--fail-relative", "0.01"], 0);
+    assert!(!shown.contains("top") && !shown.contains("range.X"), "{shown}");
+    // With margins: arrays of four dimensions; flat ones too.
+    fs::write(at.join("g.obj"), "v -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n").expect("a file");
+    fs::write(at.join("rays.csv"), "0,0,1,0,0,-1\n0,1,1,0,0,-1\n").expect("a file");
+    let grid = "[[rays]]\nname = \"one\"\ngrid = { columns = 4, rows = 3, width_deg = 9, height_deg = 9 }\npitch_down_deg = 90\nposition_m = [0, 0, 2]\n";
+    fs::write(at.join("grid.toml"), grid).expect("a file");
+    for (rays, out) in [("rays.csv", "flat"), ("grid.toml", "raster")] {
+        screen(at, &["cast", "g.obj", rays, "--margins", "--all", "-o", out], 0);
+        let shown = screen(at, &["--json", "diff", out, out], 0);
+        assert!(shown.contains("across.1.Z") && shown.contains("all.face"), "{shown}");
+    }
+    // All hits are compared, too.
+    fs::create_dir(at.join("other")).expect("a folder");
+    for name in ["t.npy", "all.t.npy"] {
+        fs::copy(at.join("flat").join(name), at.join("other").join(name)).expect("a file");
+    }
+    write_npy_numbers(at.join("other/all.t.npy"), &[2], &[1.0, 2.0]).expect("a file");
+    let shown = screen(at, &["diff", "flat", "other", "--shared-only"], 1);
+    assert!(shown.contains("all.t"), "{shown}");
     // Sets on one side only are named.
     fs::remove_dir_all(at.join("b/rays")).expect("a folder");
     let shown = screen(at, &["diff", "a", "b"], 1);

@@ -18,4 +18,4 @@ mod turn;
 
 pub(super) use mistakes::of_cloud;
 pub use read::CloudFacts;
-pub(super) use read::read_cloud_of;
+pub(super) use read::{CloudCase, read_cloud_of};

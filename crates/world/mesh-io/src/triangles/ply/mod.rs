@@ -12,6 +12,9 @@ use crate::triangles::parts::{Parts, coordinate};
 use header::{Element, Format, Header, Number, Property};
 use numbers::{Binary, Numbers, Text};
 
+/// Elements that are told of a file without faces, at most.
+const MAX_TOLD_ELEMENTS: usize = 6;
+
 /// Reads the vertices and the faces of a file.
 pub(super) fn read(file: &[u8]) -> Result<Parts, Fault> {
     let header = header::read(file)?;
@@ -29,7 +32,8 @@ fn rows(header: &Header<'_>, mut numbers: impl Numbers) -> Result<Parts, Fault> 
     let Some(vertices) = find(b"vertex") else {
         return Err(Fault::new("header", "no element `vertex`", "an element `vertex` with x, y and z"));
     };
-    if let (None, Some(_)) = (find(b"face"), find(b"tristrips")) {
+    // Beside faces, too: whoever skipped strips would read a part of the mesh.
+    if find(b"tristrips").is_some_and(|strips| strips.count > 0 || find(b"face").is_none()) {
         return Err(Fault::new(
             "header",
             "element `tristrips`",
@@ -37,6 +41,15 @@ fn rows(header: &Header<'_>, mut numbers: impl Numbers) -> Result<Parts, Fault> 
         ));
     }
     let mut parts = Parts::default();
+    let told = |element: &Element<'_>| {
+        format!(
+            "{} of element `{}`",
+            element.count,
+            element.name[..element.name.len().min(80)].escape_ascii()
+        )
+    };
+    let all: Vec<String> = header.elements.iter().take(MAX_TOLD_ELEMENTS).map(told).collect();
+    parts.others = format!("it has {}", all.join(", "));
     for element in &header.elements {
         match element.name {
             b"vertex" => read_vertices(element, &mut numbers, &mut parts)?,
