@@ -23,6 +23,11 @@ fn stl_that_claims_too_much_or_is_cut() {
         &whole[..200],
         "byte 80: 3 faces in a file of 200 bytes; expected a file of 234 bytes (is it cut off?)",
     );
+    // Of a binary file without faces all bytes behind the header's text are 0.
+    let mut empty = b"solid looks like text".to_vec();
+    empty.resize(80, b' ');
+    empty.resize(84, 0);
+    assert_eq!(parse("a.stl", &empty).unwrap().faces().len(), 0);
     refused(
         "a.stl",
         b"PK",
@@ -213,6 +218,17 @@ fn wrong_rows_of_ply() {
         assert!(text.contains(change.0), "{change:?}");
         refused("a.ply", text.replacen(change.0, change.1, 1), message);
     }
+    // Beside faces strips would be a part of the mesh that nobody sees; without rows they are nothing.
+    let strips = |count: u32| {
+        let element = format!("element tristrips {count}\nproperty list int int vertex_indices\nend_header");
+        text.replacen("end_header", &element, 1) + ["", "3 0 1 2\n"][count as usize]
+    };
+    refused(
+        "a.ply",
+        strips(1),
+        "header: element `tristrips`; expected an element `face`: strips are not supported",
+    );
+    assert_eq!(parse("a.ply", strips(0)).unwrap(), parse("a.ply", &text).unwrap());
     let binary = samples::binary_ply(false, false);
     let start = ply_header("binary_little_endian", "float32", "uint16", "uint").len();
     // Five vertices of 13 bytes, then the length of the first polygon and its corners.
@@ -298,4 +314,28 @@ fn pairs_of_arrays() {
     assert!(error.ends_with(
         "first bytes: a single NPY file; expected two files whose names end with vertices.npy and faces.npy"
     ));
+}
+
+#[test]
+fn a_file_without_faces_says_what_it_holds() {
+    let folder = tempfile::tempdir().unwrap();
+    let holds = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        let error = raypencil_mesh_io::read_triangles(&path).unwrap().require_faces(&path).unwrap_err();
+        error.to_string().split(": ").skip(1).collect::<Vec<_>>().join(": ")
+    };
+    let expected = "; expected at least one face";
+    assert_eq!(
+        holds("words.obj", "garbage in\ngarbage out\nmore\n"),
+        format!("file: no vertex and no face; its lines begin with \"garbage\", \"more\"{expected}")
+    );
+    assert_eq!(holds("points.obj", "v 0 0 0\nv 1 0 0\n"), format!("file: 2 vertices and no face{expected}"));
+    assert_eq!(holds("none.stl", "solid\nendsolid\n"), format!("file: no vertex and no face{expected}"));
+    let ply = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement edge 0\n\
+               property int a\nend_header\n0 0 0\n";
+    assert_eq!(
+        holds("edges.ply", ply),
+        format!("file: 1 vertex and no face; it has 1 of element `vertex`, 0 of element `edge`{expected}")
+    );
 }
