@@ -41,8 +41,10 @@ mod bag;
 mod cloud;
 mod columns;
 mod comparison;
+mod layout;
 mod pack;
 mod page;
+mod page_solid;
 mod range_picture;
 mod text;
 mod warnings;
@@ -59,6 +61,7 @@ pub use comparison::{
     CastCounts, CastValue, Comparison, RayVerdict, Stated, ValueTally, Wrong, compare, compare_with,
     comparison_headline, comparison_json, comparison_text, write_comparison,
 };
+pub use layout::PageScan;
 pub use pack::{
     AskedBy, CandidateConventions, CastGround, CloudFacts, RayPackChecked, RayPackCounts, check_ray_pack,
     check_stated_rays, is_ray_pack, ray_pack_len, read_stated, write_ray_pack, write_scan_pack,

@@ -6,15 +6,20 @@ use raypencil_explorer::{DifferingCell, RasterChannel, RasterGroup, RasterPage, 
 use raypencil_files::{FileError, write_atomically};
 use raypencil_judge::Class;
 use raypencil_report::{Block, Column, Document, Grid, Outcome, Room, count, described_words};
-use raypencil_scene::{CastRay, NamedRaySet, Side};
+use raypencil_scene::{CastRay, NamedRaySet, Reading, Side, Triangles};
 
-use crate::answers::{Answers, FirstHit};
+use crate::answers::{Answers, FirstHit, side_number};
 use crate::comparison::{Comparison, RayVerdict, Stated, comparison_headline, wrong_text};
+use crate::layout::{Layout, PageScan};
+use crate::page_solid::page_solid;
 use crate::range_picture::{range_picture, top_picture};
 use crate::text::{counts_text, ray_text};
 
-/// Maximum number of cells of all channels and sides together: it keeps a page to some twenty megabytes.
-const MAX_CELLS: usize = 6_000_000;
+/// Maximum number of cells of all channels and sides together: it keeps a page to some ten megabytes.
+const MAX_CELLS: usize = 4_000_000;
+
+/// Channels that find room in any case, in the order of [`CastPage::channels`]: of more rays than that allows some are left out.
+const SURE_CHANNELS: usize = 8;
 
 /// Maximum number of rays that a page describes in full.
 const MAX_DESCRIBED_RAYS: usize = 1000;
@@ -22,9 +27,6 @@ const MAX_DESCRIBED_RAYS: usize = 1000;
 /// How the numbers of a page are to be read.
 const NUMBERS: &str = "The numbers of this page are in single precision; the arrays beside it have all digits. Lengths are in the mesh's \
                        own unit, which the scales call m.";
-
-/// Said where no ray is shown by itself.
-const TOO_MANY: &str = "The rays are too many to be shown one by one.";
 
 /// A cast as a page shows it.
 #[derive(Clone, Copy)]
@@ -39,8 +41,12 @@ pub struct CastPage<'a> {
     pub rays: &'a [CastRay],
     /// The exact answers.
     pub answers: &'a Answers,
-    /// The set, if the rays have a pattern.
+    /// The mesh, for the points in 3-D over it.
+    pub mesh: Option<&'a Triangles>,
+    /// The set, if the rays have a pattern: it is drawn as fixed pictures too.
     pub set: Option<&'a NamedRaySet>,
+    /// The scan, if the rays have one.
+    pub scan: Option<PageScan<'a>>,
     /// Another program's first hits.
     pub compared: Option<ComparedHits<'a>>,
 }
@@ -91,7 +97,9 @@ impl CastPage<'_> {
     ///     shape: &rays.shape,
     ///     rays: &rays.rays,
     ///     answers: &answers,
+    ///     mesh: None,
     ///     set: None,
+    ///     scan: None,
     ///     compared: None,
     /// };
     /// assert!(page.document().page()?.contains("<h1>two rays on &#60;a mesh&#62;</h1>"));
@@ -162,15 +170,11 @@ impl CastPage<'_> {
         grid
     }
 
-    /// The part that answers when asked, as HTML, and sentences on what it shows. Empty where the rays are too many.
+    /// The part that answers when asked, as HTML, and sentences on what it shows.
     pub(crate) fn explorer_with_notes(&self) -> (String, Vec<String>) {
-        match self.explorer() {
-            None => (String::new(), vec![TOO_MANY.into()]),
-            Some((html, layout, left_out)) => {
-                let words = [layout, left_out, NUMBERS.to_string()];
-                (html, words.into_iter().filter(|words| !words.is_empty()).collect())
-            }
-        }
+        let (html, layout, left_out) = self.explorer();
+        let words = [layout, left_out, NUMBERS.to_string()];
+        (html, words.into_iter().filter(|words| !words.is_empty()).collect())
     }
 
     /// Number of sides: the exact answers, and the other program's.
@@ -178,13 +182,9 @@ impl CastPage<'_> {
         1 + usize::from(self.compared.is_some())
     }
 
-    /// The elements of the explorer; in words, where each ray stands, and which channels found no room. `None` if not one
-    /// channel would find room: nothing is then made for each ray.
-    fn explorer(&self) -> Option<(String, String, String)> {
-        if self.sides() * self.rays.len() > MAX_CELLS {
-            return None;
-        }
-        let layout = Layout::of(self.shape, self.set);
+    /// The elements of the explorer; in words, where each ray stands, and which channels found no room.
+    fn explorer(&self) -> (String, String, String) {
+        let layout = self.layout();
         let (group, left_out) = self.group(&layout);
         let (described, differing) = (group.described.len() as u64, group.differing.len() as u64);
         let words = match differing {
@@ -206,8 +206,20 @@ impl CastPage<'_> {
             classes: ["same", "tie", "rounding", "approximation", "undecided", "wrong"],
             groups: &[group],
             described_words: &words,
+            solid: self.mesh.map(|mesh| page_solid(mesh, self.scan.as_ref())),
         };
-        Some((page.html(), layout.words, left_out))
+        (page.html(), layout.words, left_out)
+    }
+
+    /// Where each ray stands. Of rays without room for each the worst are shown.
+    fn layout(&self) -> Layout {
+        let most = MAX_CELLS / (SURE_CHANNELS * self.sides());
+        let rank = |ray: usize| match self.compared.as_ref().map(|of| &of.comparison.verdicts[ray]) {
+            Some(RayVerdict::Wrong(_)) => 2,
+            Some(RayVerdict::Rounding { .. }) => 1,
+            _ => 0,
+        };
+        Layout::of(self.shape, self.rays, self.scan.as_ref()).thinned(most, rank)
     }
 
     /// The channels of both sides, and in words which of them found no room.
@@ -216,11 +228,11 @@ impl CastPage<'_> {
         let mut channels = Vec::new();
         let mut left_out = Vec::new();
         let sides = self.sides();
-        for (name, unit, channel) in self.channels() {
+        for (name, unit, channel) in self.channels(layout) {
             match room.checked_sub(sides * layout.rays.len()) {
                 Some(left) => {
                     room = left;
-                    channels.push((name.to_string(), unit.to_string(), channel.laid_out(layout)));
+                    channels.push((name.to_string(), unit.to_string(), channel));
                 }
                 None => left_out.push(name),
             }
@@ -231,83 +243,113 @@ impl CastPage<'_> {
         };
         let (differing, described) = self.differing(layout);
         let size = (layout.width, layout.height);
-        (RasterGroup { name: layout.name.clone(), size, channels, differing, described }, words)
+        (
+            RasterGroup {
+                name: layout.name.clone(),
+                size,
+                axes: layout.axes.clone(),
+                channels,
+                differing,
+                described,
+            },
+            words,
+        )
     }
 
-    /// Each channel with its name and unit, in order of importance: ray by ray, the exact answers and then the others.
-    fn channels(&self) -> Vec<(&'static str, &'static str, PerRay)> {
-        let (answers, rays) = (self.answers, self.answers.first.len() as u32);
-        let stated = self.compared.map(|compared| compared.stated);
-        let real = |of: OfHit, none: f64| answers.values(of, none);
-        let both = |exact: Vec<f64>, other: Option<Vec<f64>>| match stated {
-            Some(_) => PerRay::Reals(vec![Some(exact), other]),
-            None => PerRay::Reals(vec![Some(exact)]),
+    /// Each channel with its name and unit, in order of importance: cell by cell, the exact answers and then the others.
+    fn channels(&self, layout: &Layout) -> Vec<(&'static str, &'static str, RasterChannel)> {
+        let (answers, stated) = (self.answers, self.compared.map(|compared| compared.stated));
+        let cells = |of: &dyn Fn(usize) -> f64| -> Vec<f32> {
+            layout.rays.iter().map(|ray| ray.map_or(f32::NAN, |ray| of(ray) as f32)).collect()
+        };
+        let whole_cells = |of: &dyn Fn(usize) -> u32| -> Vec<u32> {
+            layout.rays.iter().map(|ray| ray.map_or(u32::MAX, of)).collect()
+        };
+        let hit = |of: OfHit, none: f64| cells(&|ray| answers.first[ray].hit().map_or(none, of));
+        let distance = |of: OfHit| {
+            cells(&|ray| match &answers.first[ray] {
+                Reading::Hit(hit) => of(hit),
+                Reading::TooNear => f64::NEG_INFINITY,
+                Reading::Miss => f64::INFINITY,
+            })
+        };
+        let both = |exact: Vec<f32>, other: Option<Vec<f32>>| match stated {
+            Some(_) => RasterChannel::Reals(vec![Some(exact), other]),
+            None => RasterChannel::Reals(vec![Some(exact)]),
         };
         let wholes = |exact: Vec<u32>, other: Option<Vec<u32>>| match stated {
-            Some(_) => PerRay::Wholes(vec![Some(exact), other]),
-            None => PerRay::Wholes(vec![Some(exact)]),
+            Some(_) => RasterChannel::Wholes(vec![Some(exact), other]),
+            None => RasterChannel::Wholes(vec![Some(exact)]),
         };
-        let face = |face: Option<raypencil_scene::FaceId>| face.map_or(u32::MAX, |face| face.0);
-        let sides = |side: Option<Side>| match side {
+        let side = |side: Option<Side>| match side {
             Some(Side::Front) => 1.0,
             Some(Side::Back) => -1.0,
             None => 0.0,
         };
-        let part = |vectors: &Option<Vec<glam::DVec3>>, axis: usize| -> Option<Vec<f64>> {
-            Some(vectors.as_ref()?.iter().map(|vector| vector[axis]).collect())
+        let numbers = |of: fn(&Stated) -> &Option<Vec<f64>>| {
+            let values = of(stated?).as_ref()?;
+            Some(cells(&|ray| values[ray]))
         };
-        let given = |of: fn(&Stated) -> &Option<Vec<f64>>| stated.and_then(|stated| of(stated).clone());
+        let part = |of: fn(&Stated) -> &Option<Vec<glam::DVec3>>, axis: usize| {
+            let values = of(stated?).as_ref()?;
+            Some(cells(&|ray| values[ray][axis]))
+        };
+        // What gives t and no range gives it all the same.
+        let stated_range = || {
+            numbers(|stated| &stated.range).or_else(|| {
+                let t = stated?.t.as_ref()?;
+                Some(cells(&|ray| t[ray] * self.rays[ray].direction.length()))
+            })
+        };
+        let stated_face = || {
+            let faces = stated?.face.as_ref()?;
+            Some(whole_cells(&|ray| faces[ray].map_or(u32::MAX, |face| face.0)))
+        };
+        let stated_side = || {
+            let sides = stated?.side.as_ref()?;
+            Some(cells(&|ray| side(sides[ray])))
+        };
+        let exact_face = |ray: usize| answers.first[ray].hit().map_or(u32::MAX, |hit| hit.face.0);
+        let number = |ray: usize| ray as u32;
         let mut channels = vec![
-            ("range.T", "m", both(answers.distances(|hit| hit.range), given(|stated| &stated.range))),
-            (
-                "face.I",
-                "",
-                wholes(
-                    answers.values(|hit| hit.face.0, u32::MAX),
-                    stated.and_then(|stated| {
-                        Some(stated.face.as_ref()?.iter().map(|one| face(*one)).collect())
-                    }),
-                ),
-            ),
-            (
-                "incidence.V",
-                "",
-                both(real(|hit| hit.cos_incidence, f64::NAN), given(|stated| &stated.cos_incidence)),
-            ),
+            ("range.T", "m", both(distance(|hit| hit.range), stated_range())),
+            ("face.I", "", wholes(whole_cells(&exact_face), stated_face())),
             // Which ray of the arrays a cell is.
-            ("ray", "", wholes((0..rays).collect(), stated.map(|_| (0..rays).collect()))),
-            (
-                "side",
-                "",
-                both(
-                    answers.values(|hit| sides(Some(hit.side)), 0.0),
-                    stated.and_then(|stated| {
-                        Some(stated.side.as_ref()?.iter().map(|one| sides(*one)).collect())
-                    }),
-                ),
-            ),
-            ("faces at this t", "", both(real(|hit| f64::from(hit.ties), 0.0), None)),
-            ("t", "", both(answers.distances(|hit| hit.t), given(|stated| &stated.t))),
+            ("ray", "", wholes(whole_cells(&number), stated.map(|_| whole_cells(&number)))),
         ];
         let points: [(&str, OfHit); 3] =
             [("P.X", |hit| hit.point.x), ("P.Y", |hit| hit.point.y), ("P.Z", |hit| hit.point.z)];
+        for (axis, (name, of)) in points.into_iter().enumerate() {
+            channels.push((name, "m", both(hit(of, f64::NAN), part(|stated| &stated.point, axis))));
+        }
+        if let Some(times) = self.scan.and_then(|scan| scan.times) {
+            channels.push(("time", "s", both(cells(&|ray| times[ray]), None)));
+        }
+        if let Some(rings) = self.scan.and_then(|scan| scan.rings()) {
+            // Channels are the second dimension.
+            let inner: usize = self.shape.iter().skip(2).map(|&count| count as usize).product();
+            let ring = cells(&|ray| rings[ray / inner % rings.len()] as f64);
+            channels.push(("ring", "", both(ring, None)));
+        }
+        channels.extend([
+            (
+                "incidence.V",
+                "",
+                both(hit(|hit| hit.cos_incidence, f64::NAN), numbers(|stated| &stated.cos_incidence)),
+            ),
+            ("side", "", both(hit(|hit| f64::from(side_number(hit.side)), 0.0), stated_side())),
+            ("faces at this t", "", both(hit(|hit| f64::from(hit.ties), 0.0), None)),
+            ("t", "", both(distance(|hit| hit.t), numbers(|stated| &stated.t))),
+        ]);
         let normals: [(&str, OfHit); 3] =
             [("N.X", |hit| hit.normal.x), ("N.Y", |hit| hit.normal.y), ("N.Z", |hit| hit.normal.z)];
-        for (axis, (name, of)) in points.into_iter().enumerate() {
-            let other = stated.and_then(|stated| part(&stated.point, axis));
-            channels.push((name, "m", both(real(of, f64::NAN), other)));
-        }
         for (axis, (name, of)) in normals.into_iter().enumerate() {
-            let other = stated.and_then(|stated| part(&stated.normal, axis));
-            channels.push((name, "", both(real(of, f64::NAN), other)));
+            channels.push((name, "", both(hit(of, f64::NAN), part(|stated| &stated.normal, axis))));
         }
         if let Some(margins) = &self.answers.margins {
-            let of = |margin: fn(&raypencil_referee::Margins) -> f64| margins.iter().map(margin).collect();
+            let of = |margin: fn(&raypencil_referee::Margins) -> f64| cells(&|ray| margin(&margins[ray]));
             channels.push(("margin to another face", "m", both(of(|margins| margins.face.lo), None)));
             channels.push(("margin to another surface", "m", both(of(|margins| margins.surface.lo), None)));
-        }
-        if let Some(times) = self.set.and_then(|set| set.times.as_ref()) {
-            channels.push(("time", "s", both(times.clone(), None)));
         }
         channels
     }
@@ -357,80 +399,6 @@ impl CastPage<'_> {
             (cell, text)
         });
         (differing, described.collect())
-    }
-}
-
-/// Numbers of one channel, one for each ray, on each side.
-enum PerRay {
-    Reals(Vec<Option<Vec<f64>>>),
-    Wholes(Vec<Option<Vec<u32>>>),
-}
-
-impl PerRay {
-    fn laid_out(&self, layout: &Layout) -> RasterChannel {
-        match self {
-            Self::Reals(sides) => {
-                let cells = |side: &Option<Vec<f64>>| {
-                    let side = side.as_ref()?;
-                    Some(layout.rays.iter().map(|ray| ray.map_or(f32::NAN, |ray| side[ray] as f32)).collect())
-                };
-                RasterChannel::Reals(sides.iter().map(cells).collect())
-            }
-            Self::Wholes(sides) => {
-                let cells = |side: &Option<Vec<u32>>| {
-                    let side = side.as_ref()?;
-                    Some(layout.rays.iter().map(|ray| ray.map_or(u32::MAX, |ray| side[ray])).collect())
-                };
-                RasterChannel::Wholes(sides.iter().map(cells).collect())
-            }
-        }
-    }
-}
-
-/// Where each ray stands on the page.
-struct Layout {
-    name: String,
-    width: u32,
-    height: u32,
-    /// The ray of each cell; `None` behind the last one.
-    rays: Vec<Option<usize>>,
-    words: String,
-}
-
-impl Layout {
-    fn of(shape: &[u64], set: Option<&NamedRaySet>) -> Self {
-        let name = set.map_or("rays", |set| &set.name).to_string();
-        let of_set = set.and_then(|set| Some((shape, set.elevations_deg.as_ref()?)));
-        if let Some((&[firings, channels], elevations)) = of_set {
-            let mut order: Vec<usize> = (0..elevations.len()).collect();
-            order.sort_by(|&a, &b| elevations[b].total_cmp(&elevations[a]));
-            let rays = order.iter().flat_map(|channel| {
-                (0..firings as usize).map(move |firing| Some(firing * channels as usize + channel))
-            });
-            let words = "A row for each channel, the highest elevation on top; columns are firing sequences, in the order of \
-                         time.";
-            return Self {
-                name,
-                width: firings as u32,
-                height: channels as u32,
-                rays: rays.collect(),
-                words: words.into(),
-            };
-        }
-        let all: u64 = shape.iter().product();
-        let (width, words) = match shape {
-            [] | [_] => {
-                let side = (1..).find(|side: &u64| side * side >= all).unwrap_or(1).max(1);
-                (side, "The rays in their order, row by row.")
-            }
-            [_, rest @ ..] => (
-                rest.iter().product::<u64>().max(1),
-                "A row for each index of the first dimension; the others follow each other along it.",
-            ),
-        };
-        let height = all.div_ceil(width).max(1);
-        let rays = (0..(width * height) as usize).map(|ray| (ray < all as usize).then_some(ray));
-        Self { name, width: width as u32, height: height as u32, rays: rays.collect(), words: words.into() }
     }
 }
 

@@ -99,7 +99,7 @@ pub fn range_picture(answers: &Answers, set: &NamedRaySet) -> Option<Drawing> {
 }
 
 /// A view from above: two axes of the page and the height, as signed axes of the mesh's frame.
-struct View {
+pub(crate) struct View {
     right: DVec3,
     page_up: DVec3,
     up: DVec3,
@@ -107,13 +107,18 @@ struct View {
 
 impl View {
     /// The view along the axis of the mesh's frame that is nearest to `up`. Page and height are right-handed.
-    fn along(up: DVec3) -> Self {
+    pub(crate) fn along(up: DVec3) -> Self {
         let axis = up.abs().max_position();
         let sign = if up[axis] < 0.0 { -1.0 } else { 1.0 };
         // x is to the right unless it is the height.
         let right = if axis == 0 { DVec3::Y } else { DVec3::X };
         let up = DVec3::AXES[axis] * sign;
         Self { right, page_up: up.cross(right), up }
+    }
+
+    /// Its axes in the mesh's frame: to the right, up the page, upward.
+    pub(crate) fn axes(&self) -> [[f64; 3]; 3] {
+        [self.right, self.page_up, self.up].map(|axis| axis.to_array())
     }
 
     /// An axis of the view by its name: `x`, `-z`.

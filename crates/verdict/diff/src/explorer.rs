@@ -43,6 +43,7 @@ pub(crate) fn explorer(difference: &Difference, sides: &Sides) -> (String, Strin
         classes: ["equal", "tie", "rounding", "approximation", "undecided", "differs"],
         groups: &groups,
         described_words: "",
+        solid: None,
     };
     (page.html(), words)
 }
@@ -66,6 +67,7 @@ fn add(groups: &mut BTreeMap<(String, u32, u32), RasterGroup>, channel: &Channel
     let entry = groups.entry(key).or_insert_with(|| RasterGroup {
         name: if group.is_empty() { format!("{} x {}", size.0, size.1) } else { group.to_string() },
         size,
+        axes: None,
         channels: Vec::new(),
         differing: Vec::new(),
         described: Vec::new(),

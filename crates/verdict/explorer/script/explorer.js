@@ -19,6 +19,7 @@ import { choiceOfHash, hashOfChoice } from './page_hash.js';
 import { Keyboard, helpDialog } from './keyboard.js';
 import { explorerKeys } from './explorer_keys.js';
 import { Geometry } from './geometry.js';
+import { CloudView } from './cloud_view.js';
 
 /** @typedef {import('./page_model.js').PageModel} PageModel */
 /** @typedef {import('./container.js').Container} Container */
@@ -26,6 +27,9 @@ import { Geometry } from './geometry.js';
 
 /** Time that each side is shown in a flip: milliseconds. */
 const FLIP_TIME = 700;
+
+/** Sensors so many times as wide as high get the whole width of the page. */
+const FLAT_SHAPE = 8;
 
 /** Time to wait for the first picture before the rest of the page is filled: milliseconds. */
 const LONGEST_WAIT = 2500;
@@ -77,6 +81,12 @@ export class Explorer {
       (text) => this.goToText(text),
     );
     this.geometry = model.mesh && model.mesh.faces ? new Geometry(this.data) : null;
+    this.cloud = model.solid
+      ? new CloudView(this.data, this.state, this.painter, model.solid, {
+          channels: this.channels,
+          settings: (of) => this.pictures.chosen.settings(of),
+        })
+      : null;
     this.detail = new RayDetail(this.data, {
       showPicture: () => this.pictures.showSelected(),
       step: (by) => this.step(by),
@@ -112,12 +122,14 @@ export class Explorer {
   build() {
     const maps = element('div', { class: 'x-maps' }, ...this.pictures.panels.map((panel) => panel.root));
     const side = element('div', { class: 'x-side' }, this.readout.root, this.list, this.detail.root);
-    const main = element('div', { class: 'x-main' }, maps, side);
+    const isFlat = this.model.sensors.every(({ width, height }) => width > FLAT_SHAPE * height);
+    const main = element('div', { class: isFlat ? 'x-main x-flat' : 'x-main' }, maps, side);
     this.root.replaceChildren(
       element('h2', {}, 'Maps and rays'),
       // The toolbar stays in sight as long as a part of this element is.
       element('div', {}, this.toolbar.root, this.toolbar.words, main),
       this.causes,
+      ...(this.cloud ? [this.cloud.root] : []),
       ...(this.geometry ? [this.geometry.root] : []),
       this.help,
     );
@@ -189,6 +201,7 @@ export class Explorer {
     const isOnlyHover = changed.size === 1 && changed.has('hover');
     if (isNew) {
       this.pictures.panels.forEach((panel) => panel.refresh());
+      this.cloud?.refresh();
     } else if (!isOnlyHover) {
       this.pictures.panels.forEach((panel) => panel.draw());
     }

@@ -9,6 +9,10 @@ import { CLASS_NAMES } from './page_model.js';
 /** @typedef {import('./painter.js').Layer} Layer */
 /** @typedef {import('./viewport.js').Viewport} Viewport */
 
+/** Width of a bar beside a picture whose width is not known, and the least of one that is: CSS pixels. */
+const USUAL_BAR = 500;
+const LEAST_BAR = 60;
+
 /**
  * @param {HTMLElement} legend @param {PageModel} model @param {Layer[]} layers @param {Viewport} view
  */
@@ -19,7 +23,9 @@ export function fillLegend(legend, model, layers, view) {
     return;
   }
   if (layer.scale) {
-    legend.append(colourBar(layer, view.width / view.ratio || 500));
+    // A picture that has no size yet gets one before anybody sees it.
+    const width = view.width / view.ratio;
+    legend.append(colourBar(layer, width > LEAST_BAR ? width : USUAL_BAR));
   }
   const keys = element('div', { class: 'x-keys' });
   for (const [look, words] of keysOf(model, layer)) {

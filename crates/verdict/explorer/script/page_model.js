@@ -33,9 +33,25 @@
  * @property {{pixel_pitch: [number, number], principal_point: [number, number], focal_length: number}|null}
  *   [camera]
  * @property {{half_width: number, thickness: number, grid_distance: number}|null} [grid]
+ * @property {RasterAxes|null} [axes] what columns and rows are
  * @property {(SensorSide|null)[]} [sides]
  * @property {SensorPairModel[]} [pairs]
  * @property {MarginModel|null} [margins]
+ *
+ * @typedef {object} RasterAxis
+ * @property {string} name
+ * @property {string} unit
+ * @property {boolean} turns whether the numbers are angles of a turn, in degrees
+ * @property {number[]} at the number of each column or row
+ *
+ * @typedef {{columns: RasterAxis, rows: RasterAxis}} RasterAxes
+ *
+ * @typedef {object} SolidModel a mesh on which the points of a raster lie
+ * @property {Triple} origin zero of the vertices, in the frame of the points
+ * @property {[Triple, Triple, Triple]} axes to the right, up the page, and upward
+ * @property {ArrayReference} vertices three f32 each
+ * @property {ArrayReference} faces three u32 each
+ * @property {string} words
  *
  * @typedef {object} CauseModel
  * @property {string[]} switches
@@ -73,6 +89,7 @@
  * @property {Record<string, {title: string, words: string}>} [switches]
  * @property {ArrayReference|null} [rays]
  * @property {string} [rays_words]
+ * @property {SolidModel|null} [solid]
  * @property {string} [opening] the address of the cell that the page opens on
  */
 

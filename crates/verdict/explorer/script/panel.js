@@ -24,6 +24,8 @@ import { channelOf, channelsOfSensor, isNamed } from './channels.js';
 
 /** Room for the axes: CSS pixels. */
 const GUTTER = { left: 40, bottom: 20, top: 4, right: 4 };
+/** The same with names of the axes. */
+const NAMED_GUTTER = { left: 58, bottom: 36, top: 6, right: 12 };
 
 export class SensorPanel {
   /** @param {number} sensorIndex @param {State} state @param {Painter} painter @param {PanelHost} host */
@@ -35,6 +37,7 @@ export class SensorPanel {
     this.model = painter.data.model;
     this.sensor = this.model.sensors[sensorIndex];
     this.view = new Viewport(this.sensor.width, this.sensor.height);
+    this.gutter = this.sensor.axes ? NAMED_GUTTER : GUTTER;
     this.channels = channelsOfSensor(this.model, sensorIndex);
     /** @type {Layer[]} */
     this.layers = [];
@@ -109,8 +112,8 @@ export class SensorPanel {
   get area() {
     const ratio = this.view.ratio;
     return {
-      x: GUTTER.left * ratio,
-      y: GUTTER.top * ratio,
+      x: this.gutter.left * ratio,
+      y: this.gutter.top * ratio,
       width: this.view.width,
       height: this.view.height,
     };
@@ -122,9 +125,9 @@ export class SensorPanel {
       return;
     }
     const ratio = window.devicePixelRatio || 1;
-    const across = width - GUTTER.left - GUTTER.right;
+    const across = width - this.gutter.left - this.gutter.right;
     const down = this.view.heightFor(across);
-    const [canvasWidth, canvasHeight] = [width, down + GUTTER.top + GUTTER.bottom].map((side) =>
+    const [canvasWidth, canvasHeight] = [width, down + this.gutter.top + this.gutter.bottom].map((side) =>
       Math.round(side * ratio),
     );
     this.canvas.style.height = `${canvasHeight / ratio}px`;
@@ -138,7 +141,8 @@ export class SensorPanel {
       this.goTo(this.awaited);
       this.awaited = -1;
     }
-    this.draw();
+    // A canvas of another size is empty.
+    this.drawNow();
   }
 
   /** The quantity that this panel shows: the chosen one, or range if the sensor does not have it. */
@@ -279,7 +283,7 @@ export class SensorPanel {
       drawSelection(context, view, cell);
     }
     context.restore();
-    drawAxes(context, view, area, ink);
+    drawAxes(context, view, area, ink, this.sensor.axes ?? null);
     this.placeDivider();
     this.canvas.style.touchAction = view.isFitted ? 'pan-y' : 'none';
     const stretch = view.stretch;

@@ -259,11 +259,13 @@ export class RayDetail {
           element('td', {}, recordedWords(Number(value), Boolean(isGiven), channel)),
         );
         const difference = reading.difference;
-        const text = isNamed(channel.drawing)
+        const isOfBoth = reading.hasA && reading.hasB;
+        const ofNames = isOfBoth && isNamed(channel.drawing);
+        const text = ofNames
           ? reading.a === reading.b
             ? 'the same'
             : 'another'
-          : Number.isFinite(difference)
+          : isOfBoth && Number.isFinite(difference)
             ? signedWithUnit(difference, channel.unit, 3)
             : '';
         return element(

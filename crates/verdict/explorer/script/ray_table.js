@@ -228,7 +228,7 @@ export function rangeWords(difference) {
   if (difference === undefined || Number.isNaN(difference)) {
     return '';
   }
-  return Number.isFinite(difference) ? signedWithUnit(difference, 'm', 3) : 'unlike';
+  return Number.isFinite(difference) ? signedWithUnit(difference, 'm', 3) : 'none';
 }
 
 /** @param {number} change @param {string} unit */

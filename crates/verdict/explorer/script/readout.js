@@ -19,6 +19,7 @@ import { NOTHING, CLASS_NAMES, NO_CODE } from './page_model.js';
 import { readCell, shareOfBound } from './cell_reading.js';
 import { isNamed } from './channels.js';
 import { recordedWords, spokenWords } from './cell_words.js';
+import { axisWords } from './axis_words.js';
 
 /** @typedef {import('./page_data.js').PageData} PageData */
 /** @typedef {import('./channels.js').Channel} Channel */
@@ -158,6 +159,14 @@ export class Readout {
     }
     table.append(rows);
     const lines = element('dl', { class: 'x-lines' });
+    const { axes } = sensor;
+    const ofAxes = axes
+      ? `${axes.columns.name} ${axisWords(axes.columns, axes.columns.at[i])}, ` +
+        `${axes.rows.name} ${axisWords(axes.rows, axes.rows.at[j])}`
+      : '';
+    if (ofAxes) {
+      lines.append(element('dt', {}, 'direction'), element('dd', { 'data-readout': 'direction' }, ofAxes));
+    }
     for (const [name, content] of this.lines(reading, shown)) {
       lines.append(element('dt', {}, name), element('dd', {}, ...content));
     }
@@ -270,7 +279,7 @@ function faceCell(name, face) {
 /** Two values of which one at least is none. @param {number} a @param {number} b */
 function unlikeWords(a, b) {
   if (a !== -Infinity && b !== -Infinity) {
-    return 'one side hits, the other does not';
+    return `none: ${Number.isFinite(a) ? 'A' : 'B'} has a hit, ${Number.isFinite(a) ? 'B' : 'A'} has none`;
   }
   const isHit = Number.isFinite(a) || Number.isFinite(b);
   return `too near on one side, ${isHit ? 'a hit' : 'no hit'} on the other`;
@@ -279,6 +288,9 @@ function unlikeWords(a, b) {
 /** @param {CellReading} reading @param {Channel} channel @returns {(Node|string)[]} */
 function differenceWords(reading, channel) {
   const { difference, singleSteps, doubleSteps } = reading;
+  if (!reading.hasA || !reading.hasB) {
+    return [readoutSpan('difference', `none: ${reading.hasA ? 'B' : 'A'} does not give this quantity`, NaN)];
+  }
   if (Number.isNaN(difference)) {
     const words = reading.a === -Infinity ? 'too near on both sides' : 'no hit on either side';
     return [readoutSpan('difference', `none: ${words}`, NaN)];

@@ -4,6 +4,12 @@
 /** Cells of flat sensors are drawn at least so high, if the whole sensor is shown: CSS pixels. */
 const FLAT_ROW_HEIGHT = 10;
 
+/** The same on a wide page: CSS pixels. */
+const WIDE_ROW_HEIGHT = 18;
+
+/** From this width on a page is wide: CSS pixels. */
+const WIDE = 760;
+
 /** Largest cell: CSS pixels. */
 const LARGEST_CELL = 260;
 
@@ -26,7 +32,8 @@ export class Viewport {
   /** Height of the area for a width, CSS pixels. @param {number} width */
   heightFor(width) {
     const square = (width * this.rows) / this.columns;
-    const flat = Math.min(160, Math.max(this.rows * FLAT_ROW_HEIGHT, 64));
+    const [row, most] = width >= WIDE ? [WIDE_ROW_HEIGHT, 320] : [FLAT_ROW_HEIGHT, 160];
+    const flat = Math.min(most, Math.max(this.rows * row, 64));
     return Math.round(Math.min(Math.max(square, flat), 640));
   }
 

@@ -38,7 +38,9 @@ pub use channels::SideMaps;
 pub use described::{RayToDescribe, rays_to_describe};
 pub use page::{DescribedRay, ExplorerPage, SideKind, without_explorer};
 pub use pair::{ComparedMaps, SensorPair};
-pub use raster_page::{DifferingCell, RasterChannel, RasterGroup, RasterPage};
+pub use raster_page::{
+    DifferingCell, RasterAxes, RasterAxis, RasterChannel, RasterGroup, RasterPage, RasterSolid,
+};
 pub use sensor::RayMargins;
 
 #[cfg(doctest)]

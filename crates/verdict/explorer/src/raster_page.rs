@@ -26,6 +26,43 @@ pub struct DifferingCell {
     pub class: Class,
 }
 
+/// What the columns or the rows of a raster are, in numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RasterAxis {
+    /// What the numbers are.
+    pub name: String,
+    /// Their unit.
+    pub unit: String,
+    /// The number of each column or row. From one to the next they may only rise, or only fall.
+    pub at: Vec<f64>,
+    /// Whether the numbers are angles of a turn, in degrees: -180 to 180 are read, whatever turns went before.
+    pub turns: bool,
+}
+
+/// Both axes of a raster.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RasterAxes {
+    /// What columns are.
+    pub columns: RasterAxis,
+    /// What rows are.
+    pub rows: RasterAxis,
+}
+
+/// A mesh on which the points of the rasters lie, the channels `P.X`, `P.Y` and `P.Z`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RasterSolid {
+    /// The place of the vertices' zero, in the frame of the points.
+    pub origin: [f64; 3],
+    /// To the right, up the page and upward, as unit vectors of that frame.
+    pub axes: [[f64; 3]; 3],
+    /// Corners, from the origin.
+    pub vertices: Vec<[f32; 3]>,
+    /// Three corners each.
+    pub faces: Vec<[u32; 3]>,
+    /// What is drawn, in words.
+    pub words: String,
+}
+
 /// Channels of one size that belong together, such as those of one sensor.
 #[derive(Debug, Clone)]
 pub struct RasterGroup {
@@ -33,6 +70,8 @@ pub struct RasterGroup {
     pub name: String,
     /// Columns and rows.
     pub size: (u32, u32),
+    /// What columns and rows are; `None`: they have numbers alone.
+    pub axes: Option<RasterAxes>,
     /// Name, unit and cells of each channel.
     pub channels: Vec<(String, String, RasterChannel)>,
     /// Cells that differ in some channel.
@@ -56,6 +95,8 @@ pub struct RasterPage<'a> {
     pub groups: &'a [RasterGroup],
     /// Which cells are described in full, in words.
     pub described_words: &'a str,
+    /// The mesh on which the points lie, if they are to be seen in 3-D.
+    pub solid: Option<RasterSolid>,
 }
 
 impl RasterPage<'_> {
@@ -69,6 +110,7 @@ impl RasterPage<'_> {
     /// let group = RasterGroup {
     ///     name: "camera".into(),
     ///     size: (2, 1),
+    ///     axes: None,
     ///     channels: vec![("range.T".into(), "m".into(), range)],
     ///     differing: vec![DifferingCell { cell: 1, channel: 0, class: Class::Defect }],
     ///     described: vec![],
@@ -80,6 +122,7 @@ impl RasterPage<'_> {
     ///     classes: ["equal", "tie", "rounding", "approximation", "undecided", "differs"],
     ///     groups: &[group],
     ///     described_words: "",
+    ///     solid: None,
     /// };
     /// assert!(page.html().contains(r#""name":"theirs""#));
     /// ```
@@ -114,11 +157,20 @@ impl RasterPage<'_> {
             [] => Value::Null,
             described => arrays.u8(json!(described).to_string().as_bytes()),
         };
+        let solid = self.solid.as_ref().map(|solid| {
+            json!({
+                "origin": solid.origin,
+                "axes": solid.axes,
+                "vertices": arrays.f32(solid.vertices.as_flattened(), Change::Delta).reference,
+                "faces": arrays.u32(solid.faces.as_flattened(), Change::Delta).reference,
+                "words": solid.words,
+            })
+        });
         let model = json!({
             "version": 1, "kind": self.kind, "title": self.title, "probe": "", "flux_unit": "", "mesh": null,
             "vehicle": null, "sides": sides, "sensors": sensors, "classes": self.classes,
             "quantities": quantities, "causes": [], "switches": {}, "rays": rays,
-            "rays_words": self.described_words,
+            "rays_words": self.described_words, "solid": solid,
         });
         html_of(&model, &arrays)
     }
@@ -188,9 +240,17 @@ fn group_model(arrays: &mut Arrays, group: &RasterGroup, first_quantity: usize, 
         })
     });
     let sides: Vec<Value> = sides.into_iter().map(|channels| json!({ "channels": channels })).collect();
+    let axis = |axis: &RasterAxis| {
+        let at: Vec<f32> = axis.at.iter().map(|at| *at as f32).collect();
+        json!({
+            "name": axis.name, "unit": axis.unit, "turns": axis.turns, "at": at,
+        })
+    };
+    let axes =
+        group.axes.as_ref().map(|axes| json!({ "columns": axis(&axes.columns), "rows": axis(&axes.rows) }));
     json!({
         "name": group.name, "kind": "raster", "beam": null, "width": width, "height": height, "max_range": null,
-        "pose": null, "camera": null, "grid": null,
+        "pose": null, "camera": null, "grid": null, "axes": axes,
         "sides": sides, "pairs": pair.into_iter().collect::<Vec<_>>(), "margins": null,
     })
 }

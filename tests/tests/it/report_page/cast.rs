@@ -2,9 +2,10 @@
 
 use raypencil::Silent;
 use raypencil::cast::{
-    Answers, CastPage, ComparedHits, Questions, RayArray, Stated, cast, compare, write_cast_page,
+    Answers, CastPage, ComparedHits, PageScan, Questions, RayArray, Stated, cast, compare, write_cast_page,
 };
-use raypencil::{CastRay, Precision, Sides, Triangles};
+use raypencil::pattern::{Mounting, Spinning};
+use raypencil::{CastRay, NamedRaySet, Pose, Precision, Sides, Triangles};
 use tempfile::TempDir;
 
 use super::browser::open;
@@ -48,7 +49,9 @@ pub fn with_one_wrong() -> TempDir {
         shape: &rays.shape,
         rays: &rays.rays,
         answers: &answers,
+        mesh: Some(&mesh),
         set: None,
+        scan: None,
         compared: Some(ComparedHits {
             name: "one-wrong",
             stated: &stated,
@@ -101,14 +104,16 @@ fn a_wrong_ray_leads_to_its_words_and_cells_show_their_numbers() {
 
 #[test]
 fn answers_alone_have_one_side() {
-    let (_, rays, answers) = answered();
+    let (mesh, rays, answers) = answered();
     let page = CastPage {
         title: "rays on a square",
         facts: &[],
         shape: &rays.shape,
         rays: &rays.rays,
         answers: &answers,
+        mesh: Some(&mesh),
         set: None,
+        scan: None,
         compared: None,
     };
     let folder = tempfile::tempdir().expect("a folder");
@@ -139,7 +144,9 @@ fn what_is_too_near_is_told_from_a_miss() {
         shape: &rays.shape,
         rays: &rays.rays,
         answers: &answers,
+        mesh: Some(&mesh),
         set: None,
+        scan: None,
         compared: None,
     };
     let folder = tempfile::tempdir().expect("a folder");
@@ -151,5 +158,66 @@ fn what_is_too_near_is_told_from_a_miss() {
     assert_eq!(page.text("document.querySelector('[data-readout=\"a\"]').textContent"), "too near");
     assert_eq!(page.text("document.querySelector('[data-readout=\"a\"]').dataset.value"), "-Infinity");
     assert!(page.text("document.body.textContent").contains("1 too near"));
+    page.assert_quiet();
+}
+
+#[test]
+fn a_scan_has_its_angles_and_its_points_in_3d() {
+    // A VLP-16 over the middle of a floor. The other program lost one point, and has no faces.
+    let corners = vec![[-20.0, -20.0, 0.0], [20.0, -20.0, 0.0], [20.0, 20.0, 0.0], [-20.0, 20.0, 0.0]];
+    let floor = Triangles::new(corners, vec![[0, 1, 2], [0, 2, 3]]).expect("a mesh");
+    let pattern = Spinning::preset("vlp-16").expect("a preset").rays("vlp16").expect("rays");
+    let mount = Mounting::Fixed(Pose::from_position([0.0, 0.0, 1.2].into()));
+    let pattern = mount.place(pattern, "vlp16").expect("a pattern");
+    let set = NamedRaySet::new("vlp16", pattern, Sides::Both).expect("a set");
+    let rays = set.set.rays();
+    let answers = cast(&floor, rays, Sides::Both, Questions::default(), &Silent);
+    // Firing sequence 500, channel 0, which looks 15 degrees down: the lowest row, 15.
+    let lost = 500 * 16;
+    let exact = Stated::of(&answers);
+    let mut stated = Stated { point: exact.point, t: exact.t, ..Stated::default() };
+    stated.t.as_mut().expect("given")[lost] = f64::NAN;
+    stated.point.as_mut().expect("given")[lost] = [f64::NAN; 3].into();
+    let comparison = compare(&floor, rays, Sides::Both, &stated, Precision::F64, &Silent);
+    assert_eq!(comparison.counts().wrong, 1);
+    let page = CastPage {
+        title: "a scan",
+        facts: &[],
+        shape: &set.shape,
+        rays,
+        answers: &answers,
+        mesh: Some(&floor),
+        set: None,
+        scan: Some(PageScan::of(&set)),
+        compared: Some(ComparedHits {
+            name: "other",
+            stated: &stated,
+            comparison: &comparison,
+            ray_command: &|index| index.to_string(),
+        }),
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    write_cast_page(folder.path(), &page).expect("a page");
+    let opened = open(&folder.path().join("report.html"), "#vlp16/500,15/range.T/diff", (1280, 2600));
+    let Some(page) = opened else { return };
+    page.wait("document.querySelector('[data-readout-root]')?.dataset.state === 'ready'");
+    // 500 steps of -0.1990656 degrees.
+    let direction = page.text("document.querySelector('[data-readout=\"direction\"]').textContent");
+    assert_eq!(direction, "azimuth \u{2212}99.5328°, elevation \u{2212}15°");
+    let difference = page.text("document.querySelector('[data-readout=\"difference\"]').textContent");
+    assert_eq!(difference, "none: A has a hit, B has none");
+    // Rows are so high that they are seen: 16 of them on a picture of a page's width.
+    let [high, wide] = ["Height", "Width"]
+        .map(|side| page.number(&format!("document.querySelector('[data-panel=\"vlp16\"]').client{side}")));
+    assert!(high > 16.0 * 12.0 && wide > 900.0, "{wide} x {high}");
+    page.wait("document.querySelector('[data-cloud-3d]').dataset.state === 'ready'");
+    let points = || page.number("Number(document.querySelector('[data-cloud-3d]').dataset.points)") as usize;
+    assert_eq!(points(), answers.counts().0);
+    // Those of the other program, which has one less.
+    page.click("[data-mode=\"b\"]");
+    page.wait(&format!(
+        "document.querySelector('[data-cloud-3d]').dataset.points === '{}'",
+        answers.counts().0 - 1
+    ));
     page.assert_quiet();
 }

@@ -6,7 +6,7 @@ mod ray_command;
 use std::path::{Path, PathBuf};
 
 use raypencil::cast::{
-    Answers, BagForm, CastPage, CastSource, DecidedCounts, Questions, RayArray, cast as answer,
+    Answers, BagForm, CastPage, CastSource, DecidedCounts, PageScan, Questions, RayArray, cast as answer,
     cast_warnings, counts_text, ray_json, ray_text, rays_from_bytes, write_answers, write_cast_page,
     write_scan_bag, write_set,
 };
@@ -87,7 +87,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
                     folder,
                     command,
                     &source,
-                    (&array.rays, &array.shape, set),
+                    (mesh, &array.rays, &array.shape, set),
                     sides,
                     &answers,
                     &compared,
@@ -116,7 +116,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
                 let folder: Option<PathBuf> =
                     folder.map(|folder| if sets.len() == 1 { folder.into() } else { folder.join(&set.name) });
                 if let Some(folder) = &folder {
-                    let of_set = (set.set.rays(), set.shape.as_slice(), Some(set));
+                    let of_set = (mesh, set.set.rays(), set.shape.as_slice(), Some(set));
                     write_page(folder, command, &source, of_set, sides, &answers, &compared)?;
                     if let Some(fields) = command.bag {
                         let form = BagForm { fields, is_dense: command.bag_dense };
@@ -181,7 +181,7 @@ fn write_page(
     folder: &Path,
     command: &Cast,
     source: &CastSource,
-    (rays, shape, set): (&[CastRay], &[u64], Option<&NamedRaySet>),
+    (mesh, rays, shape, set): (&Triangles, &[CastRay], &[u64], Option<&NamedRaySet>),
     sides: Sides,
     answers: &Answers,
     compared: &Option<Compared<'_>>,
@@ -205,7 +205,10 @@ fn write_page(
     ];
     let ray_command = |index: usize| ray_command(command, &rays[index]);
     let compared = compared.as_ref().map(|compared| compared.hits(&ray_command));
-    write_cast_page(folder, &CastPage { title: &title, facts: &facts, shape, rays, answers, set, compared })?;
+    let scan = set.map(PageScan::of);
+    let mesh = Some(mesh);
+    let page = CastPage { title: &title, facts: &facts, shape, rays, answers, mesh, set, scan, compared };
+    write_cast_page(folder, &page)?;
     Ok(())
 }
 

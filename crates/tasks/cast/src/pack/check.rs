@@ -12,6 +12,7 @@ use super::clouds::{CloudCase, CloudFacts, of_cloud, read_cloud_of};
 use super::lengths::lengths;
 use super::mistakes::{Trial, explain};
 use super::read::RayPack;
+use super::scan::Scan;
 use crate::answers::{Answers, Questions, cast_with};
 use crate::comparison::{Comparison, Stated, compare_with};
 
@@ -30,6 +31,10 @@ pub struct RayPackChecked {
     pub comparison: Comparison,
     /// What explains why it is wrong, as one sentence. It changes no verdict.
     pub why: Option<String>,
+    /// The mesh of the pack; `None`: the rays are asked of a scene without a pack.
+    pub mesh: Option<Triangles>,
+    /// What is known of a sensor's scan; `None`: the rays are of no set.
+    pub(in crate::pack) scan: Option<Scan>,
     /// The rays of the pack.
     pub rays: RayArray,
     /// The exact answers.
@@ -90,7 +95,7 @@ pub fn check_stated_rays(
     progress: &dyn Progress,
 ) -> RayPackChecked {
     let judged = judge(ground, &rays.rays, (&stated, None), precision, progress);
-    judged.checked(asked_by, (rays, ground.sides), (name, stated))
+    judged.checked(asked_by, (rays, ground.sides), (name, stated), (None, None))
 }
 
 /// Checks a candidate against a pack of rays: a folder of arrays, or a point cloud, PCD or PLY. The answers are computed again: only the question is read
@@ -147,7 +152,7 @@ pub fn check_ray_pack(
         name: pack,
         sha256: pack_sha256,
     };
-    Ok(judged.checked(asked_by, (rays, sides), (name, stated)))
+    Ok(judged.checked(asked_by, (rays, sides), (name, stated), (Some(mesh), scan)))
 }
 
 /// What was found of rays.
@@ -164,6 +169,7 @@ impl Judged {
         AskedBy { name: pack, sha256: pack_sha256, cast_command }: AskedBy,
         (rays, sides): (RayArray, Sides),
         (name, stated): (String, Stated),
+        (mesh, scan): (Option<Triangles>, Option<Scan>),
     ) -> RayPackChecked {
         let Self { comparison, why, answers, cloud } = self;
         let fronts_only = sides == Sides::Fronts;
@@ -174,6 +180,8 @@ impl Judged {
             cast_command,
             comparison,
             why,
+            mesh,
+            scan,
             rays,
             answers,
             stated,

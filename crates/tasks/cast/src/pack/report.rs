@@ -38,7 +38,9 @@ impl RayPackChecked {
             shape: &self.rays.shape,
             rays: &self.rays.rays,
             answers: &self.answers,
+            mesh: self.mesh.as_ref(),
             set: None,
+            scan: self.scan.as_ref().map(|scan| scan.on_page("scan")),
             compared: Some(ComparedHits {
                 name: &self.name,
                 stated: &self.stated,

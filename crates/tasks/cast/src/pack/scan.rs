@@ -7,6 +7,8 @@ use raypencil_files::{Fault, FileError, Limits, read_npy_numbers, write_npy_numb
 use raypencil_scene::pattern::{Mounting, TimedPose, TimedPoses};
 use raypencil_scene::{CastRay, NamedRaySet, Pose};
 
+use crate::layout::PageScan;
+
 /// Numbers of a pose in its file: time, position, quaternion with the scalar last.
 const POSE_NUMBERS: u64 = 8;
 
@@ -132,6 +134,16 @@ impl Scan {
             }
         };
         Ok(Self { times, elevations_deg, mounting })
+    }
+
+    /// What a page shows of it.
+    pub(super) fn on_page<'a>(&'a self, name: &'a str) -> PageScan<'a> {
+        PageScan {
+            name,
+            times: self.times.as_deref(),
+            elevations_deg: self.elevations_deg.as_deref(),
+            mounting: &self.mounting,
+        }
     }
 
     /// The time of a ray; 0 without times.
