@@ -48,6 +48,9 @@ impl Rates {
 /// Bytes that `cast` takes for each ray, and for each face.
 const CAST: [u64; 2] = [800, 300];
 
+/// Bytes that `cast --scans` takes for each ray: the ray itself and its time. Answers are those of one scan.
+const RAY_OF_SCANS: u64 = 100;
+
 /// The limit of `--max-memory`, bytes; 0: none was given.
 static GIVEN: AtomicU64 = AtomicU64::new(0);
 
@@ -105,8 +108,9 @@ pub(crate) fn ask_check(pack: &Path) -> Result<(), Trouble> {
 }
 
 /// Refuses rays on a mesh for which the memory is not there.
-pub(crate) fn ask_cast(rays: usize, faces: usize) -> Result<(), Trouble> {
+pub(crate) fn ask_cast(rays: usize, faces: usize, in_scans: bool) -> Result<(), Trouble> {
     let [ray, face] = CAST;
+    let ray = if in_scans { RAY_OF_SCANS } else { ray };
     let (rays, faces) = (rays as u64, faces as u64);
     let words = format!("{}, {}", counted(rays, "ray", "rays"), counted(faces, "face", "faces"));
     refuse_above("cast", needed(BASE, &[(rays, ray), (faces, face)]), &words)

@@ -153,7 +153,7 @@ fn pack_rays(command: &Pack, rays: &Path, json: bool) -> Result<Outcome, Trouble
     }
     // One after the other.
     let most = packed.iter().map(|one| one.rays.len()).max().unwrap_or(0);
-    memory::ask_cast(most, mesh.triangles.faces().len())?;
+    memory::ask_cast(most, mesh.triangles.faces().len(), false)?;
     let mut packs = Vec::new();
     for Packed { name, rays, sides } in packed {
         let folder = name.map_or(command.output.clone(), |name| command.output.join(name));

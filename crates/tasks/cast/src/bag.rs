@@ -164,48 +164,91 @@ pub fn write_scan_bag(
     set: &NamedRaySet,
     form: BagForm,
 ) -> Result<(), FileError> {
-    let (_, point_bytes) = form.fields.layout();
-    let count = answers.first.len() as u64;
-    if count * u64::from(point_bytes) > u64::from(u32::MAX) {
-        let found = format!("{count} points of {point_bytes} bytes");
-        return Err(FileError::Cloud(Fault::new("points", found, "at most 4 GiB").in_file(folder)));
-    }
-    let time_of = |index: usize| set.times.as_ref().map_or(0.0, |times| times[index]);
-    let times = || (0..answers.first.len()).map(time_of);
-    let (first, last) = (times().reduce(f64::min).unwrap_or(0.0), times().reduce(f64::max).unwrap_or(0.0));
-    let begin = match &set.mounting {
-        Mounting::Fixed(_) => first,
-        Mounting::Moving(poses) => first.min(poses.span_s()[0]),
-    };
-    let later = (FIRST_S - begin).max(0.0);
-    let at = |seconds: f64| Stamp::from_nanoseconds(((seconds + later) * 1e9).round() as u64);
-
-    let mut bag = BagWriter::create(folder)?;
-    // Each time at which something is told, in their order; at a time the clock first, and the cloud last.
-    let mut ticks = vec![first, last];
-    if let Mounting::Moving(poses) = &set.mounting {
-        ticks.extend(poses.poses().iter().map(|pose| pose.time_s));
-    }
-    ticks.sort_by(f64::total_cmp);
-    ticks.dedup();
-    if let Mounting::Fixed(pose) = &set.mounting {
-        let transforms = vec![transform(at(first), pose)];
-        bag.write(&Topic::latched("/tf_static"), at(first), &TfMessage { transforms })?;
-    }
-    for tick in ticks {
-        bag.write(&Topic::new("/clock"), at(tick), &Clock { clock: at(tick) })?;
-        if let Mounting::Moving(poses) = &set.mounting
-            && let Some(pose) = poses.at(tick)
-        {
-            let transforms = vec![transform(at(tick), &pose)];
-            bag.write(&Topic::new("/tf"), at(tick), &TfMessage { transforms })?;
-        }
-        if tick == last {
-            let cloud = cloud(answers, set, form, (at(first), &|index| time_of(index) - first));
-            bag.write(&Topic::new("/points"), at(tick), &cloud)?;
-        }
-    }
+    let mut bag = ScanBag::create(folder, set, form)?;
+    bag.add(answers, set)?;
     bag.finish()
+}
+
+/// Such a bag with a cloud for each of several scans, in the order of time.
+pub(crate) struct ScanBag<'a> {
+    folder: &'a Path,
+    bag: BagWriter,
+    mounting: &'a Mounting,
+    form: BagForm,
+    /// Seconds by which all times are later.
+    later: f64,
+    /// The last time at which something was told.
+    told: f64,
+}
+
+impl<'a> ScanBag<'a> {
+    /// Begins a bag of the scans of a set.
+    pub(crate) fn create(folder: &'a Path, set: &'a NamedRaySet, form: BagForm) -> Result<Self, FileError> {
+        let first = set.times.iter().flatten().copied().reduce(f64::min).unwrap_or(0.0);
+        let begin = match &set.mounting {
+            Mounting::Fixed(_) => first,
+            Mounting::Moving(poses) => first.min(poses.span_s()[0]),
+        };
+        let later = (FIRST_S - begin).max(0.0);
+        let bag = BagWriter::create(folder)?;
+        let mut begun = Self { folder, bag, mounting: &set.mounting, form, later, told: f64::NEG_INFINITY };
+        if let Mounting::Fixed(pose) = &set.mounting {
+            let at = begun.at(first);
+            let transforms = vec![transform(at, pose)];
+            begun.bag.write(&Topic::latched("/tf_static"), at, &TfMessage { transforms })?;
+        }
+        Ok(begun)
+    }
+
+    fn at(&self, seconds: f64) -> Stamp {
+        Stamp::from_nanoseconds(((seconds + self.later) * 1e9).round() as u64)
+    }
+
+    /// The next scan.
+    pub(crate) fn add(&mut self, answers: &Answers, scan: &NamedRaySet) -> Result<(), FileError> {
+        let (_, point_bytes) = self.form.fields.layout();
+        let count = answers.first.len() as u64;
+        if count * u64::from(point_bytes) > u64::from(u32::MAX) {
+            let found = format!("{count} points of {point_bytes} bytes");
+            return Err(FileError::Cloud(Fault::new("points", found, "at most 4 GiB").in_file(self.folder)));
+        }
+        let time_of = |index: usize| scan.times.as_ref().map_or(0.0, |times| times[index]);
+        let times = || (0..answers.first.len()).map(time_of);
+        let (first, last) =
+            (times().reduce(f64::min).unwrap_or(0.0), times().reduce(f64::max).unwrap_or(0.0));
+        self.tell(&[first, last], last)?;
+        let cloud = cloud(answers, scan, self.form, (self.at(first), &|index| time_of(index) - first));
+        self.bag.write(&Topic::new("/points"), self.at(last), &cloud)
+    }
+
+    /// Clock and pose at some times, and at those of all poses up to a time that were not told yet.
+    fn tell(&mut self, times: &[f64], end: f64) -> Result<(), FileError> {
+        let mut ticks = times.to_vec();
+        if let Mounting::Moving(poses) = self.mounting {
+            ticks.extend(poses.poses().iter().map(|pose| pose.time_s).filter(|time| *time <= end));
+        }
+        ticks.retain(|tick| *tick > self.told);
+        ticks.sort_by(f64::total_cmp);
+        ticks.dedup();
+        for tick in ticks {
+            let at = self.at(tick);
+            self.bag.write(&Topic::new("/clock"), at, &Clock { clock: at })?;
+            if let Mounting::Moving(poses) = self.mounting
+                && let Some(pose) = poses.at(tick)
+            {
+                let transforms = vec![transform(at, &pose)];
+                self.bag.write(&Topic::new("/tf"), at, &TfMessage { transforms })?;
+            }
+            self.told = tick;
+        }
+        Ok(())
+    }
+
+    /// Ends the bag, with the poses that are left.
+    pub(crate) fn finish(mut self) -> Result<(), FileError> {
+        self.tell(&[], f64::INFINITY)?;
+        self.bag.finish()
+    }
 }
 
 fn transform(stamp: Stamp, pose: &Pose) -> TransformStamped {

@@ -46,6 +46,7 @@ mod pack;
 mod page;
 mod page_solid;
 mod range_picture;
+mod scans;
 mod text;
 mod warnings;
 mod write;
@@ -69,6 +70,7 @@ pub use pack::{
 pub use page::{CastPage, ComparedHits, write_cast_page};
 pub use range_picture::{range_picture, top_picture};
 pub use raypencil_files::{RayArray, rays_from_bytes, read_rays};
+pub use scans::{ScansWritten, write_scans};
 pub use text::{counts_text, ray_json, ray_text};
 pub use warnings::{CastSeen, cast_warnings, cast_warnings_of, open_edges};
 pub use write::{CastSource, write_answers, write_set};

@@ -82,6 +82,12 @@ pub(crate) struct Cast {
     #[arg(long, requires = "bag")]
     pub(crate) bag_dense: bool,
 
+    /// Cast the set of a spinning head in scans of so many firing sequences, and write a cloud for each: DIR/scans/*.pcd, and with --bag
+    /// one bag of all. Answers of one scan at a time are in memory. There are no arrays and no page then.
+    #[arg(long, value_name = "SEQUENCES", value_parser = clap::value_parser!(u64).range(1..), requires = "output")]
+    #[arg(conflicts_with_all = ["all", "any", "margins", "with", "ray"])]
+    pub(crate) scans: Option<u64>,
+
     /// Folder for the answers: NPY arrays of the rays' own shape, and summary.json. For sets of rays also point clouds and
     /// pictures; several sets have a folder each.
     #[arg(short, long, value_name = "DIR")]

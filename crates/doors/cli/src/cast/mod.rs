@@ -2,6 +2,7 @@
 
 mod compared;
 mod ray_command;
+mod scans;
 
 use std::path::{Path, PathBuf};
 
@@ -61,7 +62,11 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
         let text = "--bag is for sets of rays, which have times and poses; expected RAYS that end in .toml, or a scene";
         return Err(Trouble::Usage(text.into()));
     }
-    memory::ask_cast(count, mesh.faces().len())?;
+    if command.scans.is_some() && matches!(rays, Rays::Array(_)) {
+        let text = "--scans is for the set of a spinning head; expected RAYS that end in .toml, or a scene";
+        return Err(Trouble::Usage(text.into()));
+    }
+    memory::ask_cast(count, mesh.faces().len(), command.scans.is_some())?;
     let folder = command.output.as_deref();
     let output = match folder {
         Some(folder) => {
@@ -70,6 +75,11 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
         }
         None => None,
     };
+    if let (Rays::Sets(sets), Some(sequences), Some(folder)) = (&rays, command.scans, folder) {
+        let outcome = scans::cast_scans(command, (mesh, sets), sequences, folder, &source, (&spinner, json))?;
+        output.map_or(Ok(()), OutputFolder::finish)?;
+        return Ok(outcome);
+    }
     let results = match &rays {
         Rays::Array(array) => {
             let sides = if command.fronts_only { Sides::Fronts } else { Sides::Both };
