@@ -32,8 +32,10 @@ fn checked(command: &Check, json: bool) -> Result<Outcome, Trouble> {
     };
     let drawn = Verification::Drawn { seed: command.seed };
     let share = if command.verify { Verification::All } else { drawn };
-    if pack_form(&command.pack) == PackForm::Sensors {
-        memory::ask_check(&command.pack)?;
+    match pack_form(&command.pack) {
+        PackForm::Sensors => memory::ask_check(&command.pack)?,
+        PackForm::Rays => memory::ask_check_rays(&command.pack, &command.candidate)?,
+        PackForm::Triangles => {}
     }
     let declared = (&declarations, command.frame.unwrap_or_default());
     let checked = check_any_pack(&command.pack, &command.candidate, declared, share, &spinner)?;

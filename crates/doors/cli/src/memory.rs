@@ -8,10 +8,11 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use bytesize::ByteSize;
-use raypencil::io::limit_memory;
+use raypencil::io::{bytes, claimed_points, is_cloud_file, limit_memory};
 use raypencil::pack::{FileRole, Manifest};
 use raypencil::report::counted;
 use raypencil::{Scene, SensorId};
+use serde_json::Value;
 
 use crate::Trouble;
 
@@ -50,6 +51,9 @@ const CAST: [u64; 2] = [800, 300];
 
 /// Bytes that `cast --scans` takes for each ray: the ray itself and its time. Answers are those of one scan.
 const RAY_OF_SCANS: u64 = 100;
+
+/// Bytes that `check` takes for each ray of a pack of rays, for each of its faces, and for each point of a cloud.
+const CHECK_RAYS: [u64; 3] = [900, 300, 200];
 
 /// The limit of `--max-memory`, bytes; 0: none was given.
 static GIVEN: AtomicU64 = AtomicU64::new(0);
@@ -114,6 +118,26 @@ pub(crate) fn ask_cast(rays: usize, faces: usize, in_scans: bool) -> Result<(), 
     let (rays, faces) = (rays as u64, faces as u64);
     let words = format!("{}, {}", counted(rays, "ray", "rays"), counted(faces, "face", "faces"));
     refuse_above("cast", needed(BASE, &[(rays, ray), (faces, face)]), &words)
+}
+
+/// Refuses a pack of rays, and a point cloud held to it, for which the memory is not there. What cannot be read is told of by its reader.
+pub(crate) fn ask_check_rays(pack: &Path, candidate: &Path) -> Result<(), Trouble> {
+    let Ok(text) = bytes::read_file(&pack.join("raypack.json"), 1 << 20) else { return Ok(()) };
+    let Ok(document) = serde_json::from_slice::<Value>(&text) else { return Ok(()) };
+    let rays = document["counts"]["rays"].as_u64().unwrap_or(0);
+    let of_file = |name: &str| {
+        let files = document["files"].as_array()?;
+        files.iter().find(|file| file["path"] == name)?["bytes"].as_u64()
+    };
+    // Three indices of four bytes, after a header of 128.
+    let faces = of_file("faces.npy").unwrap_or(0).saturating_sub(128) / 12;
+    let points = if is_cloud_file(candidate) { claimed_points(candidate).unwrap_or(0) } else { 0 };
+    let [ray, face, point] = CHECK_RAYS;
+    let mut words = format!("{}, {}", counted(rays, "ray", "rays"), counted(faces, "face", "faces"));
+    if points > 0 {
+        words += &format!(", {}", counted(points, "point", "points"));
+    }
+    refuse_above("check", needed(BASE, &[(rays, ray), (faces, face), (points, point)]), &words)
 }
 
 /// Bytes for so many parts at so many bytes each.

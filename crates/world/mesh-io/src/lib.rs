@@ -63,7 +63,9 @@ pub mod gltf;
 mod terrain;
 pub mod triangles;
 
-pub use cloud::{Cloud, CloudColumn, CloudStorage, cloud_from_bytes, is_cloud_file, read_cloud};
+pub use cloud::{
+    Cloud, CloudColumn, CloudStorage, claimed_points, cloud_from_bytes, is_cloud_file, read_cloud,
+};
 pub use dem::{
     AxisSystem, Dem, DemFacts, DemOptions, HeightUnit, LengthUnit, NoData, Registration, SpikeFacts, Spikes,
     UnitSource, dem_from_bytes, read_dem, read_dem_with, write_geotiff,

@@ -139,6 +139,27 @@ fn casting_takes_the_memory_that_it_says() {
 }
 
 #[test]
+fn checking_a_cloud_takes_the_memory_that_it_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    std::fs::write(folder.join("floor.obj"), "v -99 -99 0\nv 99 -99 0\nv 0 99 0\nf 1 2 3\n").unwrap();
+    let scan = "[[rays]]\nname = \"a\"\nspinning = { preset = \"vlp-16\", steps = 4000 }\nposition_m = [0, 0, 1.2]\n";
+    std::fs::write(folder.join("scan.toml"), scan).unwrap();
+    for arguments in [
+        ["pack", "floor.obj", "--rays", "scan.toml", "-o", "pack"].as_slice(),
+        ["cast", "floor.obj", "scan.toml", "-o", "cast"].as_slice(),
+    ] {
+        assert!(command(folder, arguments).output().unwrap().status.success(), "{arguments:?}");
+    }
+    assert_said_is_taken(folder, &["check", "pack", "cast/cloud-sensor.pcd", "--frame", "sensor"]);
+    // What a header claims is asked before a point is read.
+    let header = "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 90000000000\nHEIGHT 1\nPOINTS 90000000000\nDATA binary\n";
+    std::fs::write(folder.join("huge.pcd"), header).unwrap();
+    let message = refusal(folder, &["check", "pack", "huge.pcd"]);
+    assert!(message.contains("90,000,000,000 points take about 18"), "{message}");
+}
+
+#[test]
 fn a_refusal_comes_before_the_work_and_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

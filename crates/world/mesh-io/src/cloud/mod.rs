@@ -9,4 +9,4 @@ mod read;
 
 pub(crate) use columns::decimals;
 pub use columns::{Cloud, CloudColumn, CloudStorage};
-pub use read::{cloud_from_bytes, is_cloud_file, read_cloud};
+pub use read::{claimed_points, cloud_from_bytes, is_cloud_file, read_cloud};

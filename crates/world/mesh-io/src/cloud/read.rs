@@ -1,5 +1,6 @@
 //! Which format a file has, and its cloud.
 
+use std::io::Read as _;
 use std::path::Path;
 
 use raypencil_files::{Fault, FileError, Limits, bytes};
@@ -12,6 +13,34 @@ use crate::triangles::ply_cloud;
 pub fn is_cloud_file(path: &Path) -> bool {
     path.extension()
         .is_some_and(|ending| ["pcd", "ply"].iter().any(|known| ending.eq_ignore_ascii_case(known)))
+}
+
+/// Bytes of a file in which its number of points is looked for.
+const HEAD_BYTES: u64 = 1 << 16;
+
+/// The number of points that the header of a file claims, before anything is read of them; `None` if it names none, or the file cannot be
+/// read.
+///
+/// ```
+/// let folder = tempfile::tempdir()?;
+/// let file = folder.path().join("mine.pcd");
+/// std::fs::write(&file, "VERSION .7\nFIELDS x y z\nWIDTH 900000000\nHEIGHT 1\nPOINTS 900000000\nDATA binary\n")?;
+/// assert_eq!(raypencil_mesh_io::claimed_points(&file), Some(900_000_000));
+/// # Ok::<(), std::io::Error>(())
+/// ```
+pub fn claimed_points(path: &Path) -> Option<u64> {
+    let mut head = Vec::new();
+    std::fs::File::open(path).ok()?.take(HEAD_BYTES).read_to_end(&mut head).ok()?;
+    for line in head.split(|&byte| byte == b'\n') {
+        let line = String::from_utf8_lossy(line);
+        let words: Vec<&str> = line.split_ascii_whitespace().collect();
+        match words.as_slice() {
+            ["POINTS", count] | ["element", "vertex", count] => return count.parse().ok(),
+            ["DATA", ..] | ["end_header"] => return None,
+            _ => {}
+        }
+    }
+    None
 }
 
 /// Reads those fields of a cloud that `keeps` names, and x, y and z.
