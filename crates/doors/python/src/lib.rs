@@ -66,7 +66,7 @@ mod _raypencil {
     #[pymodule_export]
     use crate::mesh::{MeshCore, load_mesh};
     #[pymodule_export]
-    use crate::pack::{pack_rays, pack_scene};
+    use crate::pack::{pack_ray_sets, pack_rays, pack_scene};
     #[pymodule_export]
     use crate::picture::picture;
     #[pymodule_export]

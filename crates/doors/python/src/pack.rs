@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
-use raypencil::Progress;
-use raypencil::cast::{CastSource, write_ray_pack};
+use raypencil::cast::{CastSource, write_ray_pack, write_scan_pack};
 use raypencil::harness::write_pack_with_ray_sets;
+use raypencil::io::{LoadedRaySets, read_ray_sets};
 use raypencil::pack::{PackLabel, benched};
+use raypencil::{Progress, Sides};
 
 use crate::mesh::MeshCore;
 use crate::rays::{rays_of, shaped, sides};
@@ -62,5 +63,41 @@ pub(crate) fn pack_rays<'py>(
         let source = CastSource { mesh: "arrays".into(), rays: "arrays".into(), ..CastSource::default() };
         let counts = write_ray_pack(&output, (&mesh.triangles, &array, sides), &source, watch)?;
         Ok(counts.untested())
+    })
+}
+
+/// Writes a pack for each set of a file of patterns, as the command does: of several sets in folders of their names. Returns what none of all
+/// rays tests.
+#[pyfunction]
+#[pyo3(signature = (mesh, rays, output, fronts_only, on_stage=None))]
+pub(crate) fn pack_ray_sets<'py>(
+    py: Python<'py>,
+    mesh: &MeshCore,
+    rays: PathBuf,
+    output: PathBuf,
+    fronts_only: bool,
+    on_stage: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Vec<&'static str>> {
+    let mesh = mesh.clone();
+    watched(py, on_stage, move |watch| {
+        let LoadedRaySets { sets, sha256 } = read_ray_sets(&rays)?;
+        let source = CastSource {
+            mesh: "arrays".into(),
+            rays: rays.display().to_string(),
+            rays_sha256: Some(sha256),
+            ..CastSource::default()
+        };
+        let mut untested: Option<Vec<&'static str>> = None;
+        for set in &sets {
+            let folder = if sets.len() == 1 { output.clone() } else { output.join(&set.name) };
+            let sides = if fronts_only { Sides::Fronts } else { set.set.sides() };
+            let counts = write_scan_pack(&folder, (&mesh.triangles, set, sides), &source, watch)?;
+            let of_set = counts.untested();
+            untested = Some(match untested {
+                None => of_set,
+                Some(earlier) => earlier.into_iter().filter(|words| of_set.contains(words)).collect(),
+            });
+        }
+        Ok(untested.unwrap_or_default())
     })
 }

@@ -67,6 +67,7 @@ ONLY_COMMAND = {
     "cast --output": "arrays are returned",
     "cast --ray": "`origins` and `directions`",
     "cast --scale": "vertices are an array: they can be multiplied",
+    "cast --scans": "files alone: `cast_chunks` answers more rays than memory holds",
     "cast --up": "vertices are an array: their axes can be exchanged",
     "cast RAYS": "`origins`, `directions` and the ends of rays",
     "check --seed": "is for a check that is made again, which a check from Python names the answer for",

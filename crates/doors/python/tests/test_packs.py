@@ -59,6 +59,37 @@ def test_a_pack_of_rays_has_the_commands_answers(cube: Mesh, command: Command, t
     assert untested == ["ties"]
 
 
+def test_a_pack_of_a_scan_is_the_commands(command: Command, cube: Mesh, tmp_path: Path) -> None:
+    (tmp_path / "scan.toml").write_text(
+        """
+[[rays]]
+name = "head"
+spinning = { elevations_deg = [-30, 0, 30], steps = 40 }
+poses = [{ time_s = 0, position_m = [-2, 0.5, 0.5] }, { time_s = 1, position_m = [-1, 0.5, 0.5] }]
+"""
+    )
+    command("pack", DATA / "rays/cube.obj", "--rays", "scan.toml", "-o", "theirs")
+    pack_rays(cube, tmp_path / "scan.toml", tmp_path / "ours")
+    names = sorted(file.name for file in (tmp_path / "theirs").glob("*.npy"))
+    assert {"time.npy", "pose.npy", "elevation.npy"} <= set(names)
+    for name in names:
+        assert (tmp_path / "theirs" / name).read_bytes() == (tmp_path / "ours" / name).read_bytes(), name
+    # It knows its scan: a cloud in the sensor's frame is judged.
+    command("cast", DATA / "rays/cube.obj", "scan.toml", "-o", "cast")
+    assert check(tmp_path / "ours", tmp_path / "cast/cloud-sensor.pcd", frame="sensor")
+    assert not check(tmp_path / "ours", tmp_path / "cast/cloud-sensor.pcd", frame="start")
+
+
+def test_several_sets_have_a_pack_each(cube: Mesh, tmp_path: Path) -> None:
+    table = '[[rays]]\nname = "{}"\nposition_m = [-3, 0.5, 0.5]\ngrid = {{ columns = 5, rows = 4, width_deg = 40, height_deg = 30 }}\n'
+    (tmp_path / "two.toml").write_text(table.format("left") + table.format("right") + 'sides = "fronts"\n')
+    untested = pack_rays(cube, str(tmp_path / "two.toml"), tmp_path / "packs")
+    assert "t_min" in untested
+    assert all((tmp_path / "packs" / name / "raypack.json").is_file() for name in ("left", "right"))
+    with pytest.raises(RaypencilError, match="no-such"):
+        pack_rays(cube, tmp_path / "no-such.toml", tmp_path / "none")
+
+
 def test_renders_are_right_on_a_pack() -> None:
     scene = Scene(HARD / "scene.toml")
     for renderer in ("tracer", "referee"):

@@ -61,7 +61,9 @@ def pack_rays(
 
     Args:
         mesh: as in :func:`cast`.
-        rays: as in :func:`judge`.
+        rays: as in :func:`judge`; or the path of a file of patterns, TOML with tables ``[[rays]]``. Each of its sets becomes a pack
+            of a scan, with times and poses, to which :func:`check` holds point clouds; several sets have a folder each in
+            ``output``, by their names.
         output: the folder.
         fronts_only: rays pass through the backs of faces.
         progress: see :func:`cast`.
@@ -69,6 +71,11 @@ def pack_rays(
     Returns:
         What none of the rays tests, in words: ``ties``, ``backs of faces``, ``t_min``, ...
     """
+    if isinstance(rays, (str, os.PathLike)):
+        with stages(progress) as on_stage:
+            return _raypencil.pack_ray_sets(
+                as_mesh(mesh)._core, os.fspath(rays), os.fspath(output), fronts_only, on_stage
+            )
     of_rays, shape = _arrays.given_rays(rays)
     with stages(progress) as on_stage:
         return _raypencil.pack_rays(as_mesh(mesh)._core, of_rays, list(shape), os.fspath(output), fronts_only, on_stage)

@@ -210,6 +210,13 @@ def pack_rays(
     fronts_only: bool,
     on_stage: _OnStage = None,
 ) -> list[str]: ...
+def pack_ray_sets(
+    mesh: MeshCore,
+    rays: _Path,
+    output: _Path,
+    fronts_only: bool,
+    on_stage: _OnStage = None,
+) -> list[str]: ...
 def check(
     pack: _Path,
     candidate: _Path,
