@@ -252,7 +252,7 @@ export class CloudView {
     this.setPose(
       name === 'top'
         ? orbitPose(centre, size * 1.1, Math.PI / 2, Math.PI / 2)
-        : orbitPose(centre, size * 0.95, 0.9, 0.6),
+        : orbitPose(centre, size * 1.15, 0.9, 0.6),
     );
   }
 
