@@ -235,6 +235,9 @@ fn a_number_given_as_an_option_and_as_a_setting_is_refused() {
         load("pyramids", &overrides).unwrap_err().to_string()
     };
     let plain = Overrides::default;
+    // Out of range: a number that people can read.
+    let far = load("pyramids", &Overrides { at: Some([1e300, 0.0]), ..plain() }).unwrap_err().to_string();
+    assert_eq!(far, "override at x is 1e300; expected -1e12 to 1e12 metres");
     for (overrides, name, setting) in [
         (Overrides { at: Some([1.0, 2.0]), ..plain() }, "--at", "vehicle.position_m=[0, 0]"),
         (Overrides { heading_deg: Some(9.0), ..plain() }, "--heading", "vehicle.heading_deg=8"),

@@ -465,3 +465,27 @@ fn recordings_tell_too_near_from_a_miss() {
     let shown = screen(at, &["diff", "right-flat", "other-flat", "--fail", "1e9"], 1);
     assert!(shown.contains("A -inf, B inf"), "{shown}");
 }
+
+#[test]
+fn a_mesh_without_any_face_is_refused_where_rays_are_cast() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("words.obj"), "garbage in\ngarbage out\n").unwrap();
+    fs::write(folder.join("rays.csv"), "0,0,1,0,0,-1\n").unwrap();
+    fs::write(
+        folder.join("scene.toml"),
+        "version = 1\n[terrain]\nfile = \"words.obj\"\n[vehicle]\nposition_m = [0, 0, 2]\n[[rays]]\nname = \"down\"\n\
+         spinning = { elevations_deg = [-90], steps = 1 }\n",
+    )
+    .unwrap();
+    let words = ["words.obj: file: no vertex and no face; its lines begin with \"garbage\"", "at least one face"];
+    for line in [
+        &["cast", "words.obj", "--ray", "0,0,1,0,0,-1"][..],
+        &["cast", "words.obj", "rays.csv", "-o", "out"],
+        &["cast", "scene.toml", "-o", "out"],
+        &["pack", "words.obj", "--rays", "rays.csv", "-o", "out"],
+    ] {
+        assert_trouble(&raypencil(folder, line), &words);
+        assert!(!folder.join("out").exists(), "{line:?}");
+    }
+}

@@ -118,6 +118,11 @@ fn sweeps_that_make_no_sense_are_refused() {
         &sweep(&["--do", "drive", "--with", "scanline,tracer"]),
         &["expected one renderer to drive"],
     );
+    // Two settings of which one overwrites a part of the other: each row would be labelled with both.
+    assert_trouble(
+        &sweep(&["--set", "beam.0.pitch_down_deg=20,30", "--set", "beam.pitch_down_deg=25"]),
+        &["beam.pitch_down_deg=25", "beam.0.pitch_down_deg=20 sets the same", "nothing was written"],
+    );
     // A value that its key does not take, anywhere in a list, a range or a file: nothing is begun.
     fs::write(house.join("list.csv"), "beam.thickness_mm,camera.pitch_down_deg\n4,20\n4,20:35:5\n").unwrap();
     for (more, run, words) in [

@@ -51,7 +51,7 @@ fn wrong_words_of_stl() {
         (("1 0 0", "1 nan 0"), "line 5, face 0: NaN; expected a finite number within 1e30"),
         (
             ("1 0 0", "1e31 0 0"),
-            "line 5, face 0: 10000000000000000000000000000000; expected a finite number within 1e30",
+            "line 5, face 0: 1e31; expected a finite number within 1e30",
         ),
         (("1 0 0", "1 0"), "line 6, face 0: \"vertex\"; expected a decimal number"),
         (("\nendsolid", ""), "line 8: the end of the file; expected `facet` or `endsolid`"),
@@ -228,7 +228,7 @@ fn wrong_rows_of_ply() {
         strips(1),
         "header: element `tristrips`; expected an element `face`: strips are not supported",
     );
-    assert_eq!(parse("a.ply", strips(0)).unwrap(), parse("a.ply", &text).unwrap());
+    assert_eq!(parse("a.ply", strips(0).as_bytes()).unwrap(), parse("a.ply", text.as_bytes()).unwrap());
     let binary = samples::binary_ply(false, false);
     let start = ply_header("binary_little_endian", "float32", "uint16", "uint").len();
     // Five vertices of 13 bytes, then the length of the first polygon and its corners.
