@@ -160,8 +160,7 @@ fn read_files(
     declared: &Declared,
     root: &Path,
 ) -> Result<Channels, FileError> {
-    let mut channels = Channels::default();
-    channels.files = set.files;
+    let mut channels = Channels { files: set.files, ..Channels::default() };
     let mut found: Vec<Found> =
         set.by_key.into_iter().map(|(key, channel)| Found::of_channel(key, channel)).collect();
     let mut left = *limits;

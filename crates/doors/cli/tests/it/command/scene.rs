@@ -47,6 +47,7 @@ struct Placed {
 }
 
 /// The texts of a picture, and the size of its page.
+#[allow(clippy::disallowed_methods, reason = "where letters stand, to a hundredth of a pixel")]
 fn texts(svg: &str) -> (Vec<Placed>, [f64; 2]) {
     let value = |tag: &str, name: &str| -> Option<String> {
         let from = tag.find(&format!(" {name}=\""))? + name.len() + 3;
