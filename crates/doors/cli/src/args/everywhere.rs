@@ -37,7 +37,7 @@ pub(crate) struct Everywhere {
     )]
     pub(crate) threads: Option<u16>,
 
-    /// Replace what an output folder holds of something else: results of another scene, mesh or pack, or another pack.
+    /// Replace what an output folder holds of something else: results of another command, scene, mesh or pack, or another pack.
     #[arg(long, global = true, help_heading = "Options of every command")]
     pub(crate) force: bool,
 
