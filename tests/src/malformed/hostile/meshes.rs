@@ -79,9 +79,8 @@ pub(crate) fn good() -> Vec<(&'static str, Vec<u8>)> {
     ]
 }
 
-/// Texts that are whole where they are cut. A part of an OBJ is a smaller mesh: for rays it may be empty.
-const WHOLE: [&str; 6] =
-    ["obj-cut-at-0", "obj-cut-at-8", "obj-cut-at-16", "obj-cut-at-24", "stl-cut-at-102", "stl-cut-at-104"];
+/// Texts that are whole where they are cut. A part of an OBJ is a smaller mesh, and one without its face is none to cast rays on.
+const WHOLE: [&str; 2] = ["stl-cut-at-102", "stl-cut-at-104"];
 
 fn is_good(name: &str) -> bool {
     let Some((at, what)) = word_of(name) else {
@@ -94,12 +93,10 @@ fn is_good(name: &str) -> bool {
         ("stl", 4..=6) => what != "byte-0" && what != "none",
         ("stl", 10..=12 | 14..=16 | 18..=20) => NUMBERS.contains(&what),
         ("obj", 1..=3 | 5..=7 | 9..=11) => NUMBERS.contains(&what),
-        // A statement that has no meaning for a mesh is passed over; the last vertex is number -1.
-        ("obj", 12) => what == "word" || what == "nan",
+        // The last vertex is number -1.
         ("obj", 13..=15) => what == "minus-one",
-        // The property `x` stays one; an element that is not `face` is passed over.
+        // The property `x` stays one.
         ("ply", 9) => what == "word",
-        ("ply", 17) => what != "none",
         ("ply", 25..=33) => NUMBERS.contains(&what),
         _ => false,
     }

@@ -478,7 +478,8 @@ fn a_mesh_without_any_face_is_refused_where_rays_are_cast() {
          spinning = { elevations_deg = [-90], steps = 1 }\n",
     )
     .unwrap();
-    let words = ["words.obj: file: no vertex and no face; its lines begin with \"garbage\"", "at least one face"];
+    let words =
+        ["words.obj: file: no vertex and no face; its lines begin with \"garbage\"", "at least one face"];
     for line in [
         &["cast", "words.obj", "--ray", "0,0,1,0,0,-1"][..],
         &["cast", "words.obj", "rays.csv", "-o", "out"],

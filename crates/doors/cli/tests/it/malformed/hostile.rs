@@ -52,7 +52,7 @@ fn hostile_rays() {
 
 #[test]
 fn hostile_meshes() {
-    assert_family(&meshes(), 1042, 138);
+    assert_family(&meshes(), 1042, 126);
 }
 
 #[test]

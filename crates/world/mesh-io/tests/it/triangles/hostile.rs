@@ -49,10 +49,7 @@ fn wrong_words_of_stl() {
         (("endloop", "vertex 5 5 5"), "line 7: \"vertex\"; expected `endloop`"),
         (("1 0 0", "1 zero 0"), "line 5, face 0: \"zero\"; expected a decimal number"),
         (("1 0 0", "1 nan 0"), "line 5, face 0: NaN; expected a finite number within 1e30"),
-        (
-            ("1 0 0", "1e31 0 0"),
-            "line 5, face 0: 1e31; expected a finite number within 1e30",
-        ),
+        (("1 0 0", "1e31 0 0"), "line 5, face 0: 1e31; expected a finite number within 1e30"),
         (("1 0 0", "1 0"), "line 6, face 0: \"vertex\"; expected a decimal number"),
         (("\nendsolid", ""), "line 8: the end of the file; expected `facet` or `endsolid`"),
         (("facet", "face"), "line 2: \"face\"; expected `facet` or `endsolid`"),
