@@ -101,7 +101,7 @@ pub(crate) fn fitted_ground(
             if distance > FIT_RADIUS_M {
                 continue;
             }
-            let variance = cell.variance + map.ageing_variance(&cell);
+            let variance = cell.variance + map.ageing_variance(cell);
             let residual = cell.elevation - predicted.elevation - tilt.rise(offset);
             let gate =
                 GATE_DEVIATIONS * (predicted.variance + variance).sqrt() + MAX_RELATIVE_SLOPE * distance;

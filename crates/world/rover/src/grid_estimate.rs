@@ -58,7 +58,7 @@ impl ElevationMap {
             ElevationSource::Unknown => None,
             ElevationSource::Proximity => own(Some(cell.variance.sqrt())),
             ElevationSource::Measured => {
-                let variance = cell.variance + self.ageing_variance(&cell);
+                let variance = cell.variance + self.ageing_variance(cell);
                 if self.rules.several == Rule::Paper {
                     return own(Some(variance.sqrt()));
                 }
@@ -101,7 +101,7 @@ impl ElevationMap {
             .filter_map(|(i, j)| {
                 let cell = self.cell(GridPoint { i: point.i + i, j: point.j + j });
                 (cell.source == ElevationSource::Measured)
-                    .then(|| (cell.place.extend(cell.elevation), cell.variance + self.ageing_variance(&cell)))
+                    .then(|| (cell.place.extend(cell.elevation), cell.variance + self.ageing_variance(cell)))
             })
             .collect()
     }
