@@ -87,12 +87,10 @@ impl ExactMap {
         self.map.recentre(place);
         self.cells.recentre(place);
         self.map.stand_as(rover);
-        let by_proximity = |point: &GridPoint| rover.source(*point) == ElevationSource::Proximity;
-        if rover.points().any(|point| by_proximity(&point)) {
-            for point in self.map.points() {
+        for cell in rover.points().filter(|cell| rover.source(*cell) == ElevationSource::Proximity) {
+            for point in self.map.points_in(rover, cell) {
                 let place = self.map.place(point);
                 if self.map.source(point) == ElevationSource::Unknown
-                    && by_proximity(&rover.nearest(place))
                     && let Some(elevation) = ground.height_at(place.x, place.y)
                 {
                     self.map.set_proximity(point, elevation);
@@ -107,8 +105,6 @@ impl ExactMap {
         let Self { map, cells, filled, .. } = self;
         filled.retain(|cell| cells.contains(*cell));
         let true_point = |place: DVec2| Some(place.extend(ground.height_at(place.x, place.y)?));
-        // Fine cells from the middle of a wide one to its border.
-        let half = (0.5 * cells.size().spacing / map.size().spacing).ceil() as i64;
         let mut points = Vec::new();
         for cell in cells.points() {
             let is_seen =
@@ -117,10 +113,8 @@ impl ExactMap {
                 continue;
             }
             filled.insert(cell);
-            let middle = map.nearest(cells.place(cell));
-            let within = (-half..=half).flat_map(|j| (-half..=half).map(move |i| (i, j)));
-            let places = within.map(|(i, j)| map.place(GridPoint { i: middle.i + i, j: middle.j + j }));
-            let exact = places.filter(|place| cells.nearest(*place) == cell).filter_map(true_point);
+            let exact =
+                map.points_in(cells, cell).into_iter().filter_map(|point| true_point(map.place(point)));
             points.extend(exact.map(|point| MapPoint { point, standard_error: EXACT, sight: None }));
         }
         self.map.insert(points);

@@ -35,6 +35,8 @@ pub(crate) struct Split {
     pub(crate) is_above: bool,
     /// The largest number below it, and the smallest above.
     pub(crate) between: [f64; 2],
+    /// Rays on the wrong side.
+    pub(crate) off: usize,
 }
 
 /// Separates wrong rays from right ones by their number: those beyond it are wrong, and hardly any other. A cut that
@@ -65,7 +67,7 @@ pub(crate) fn split(rays: &mut [Ray], is_above: bool) -> Option<Split> {
     let is_through_a_face = sides.values().any(|sides| sides[0] && sides[1]);
     let [inner, outer] = [rays[count].number, rays[count - 1].number];
     let between = if is_above { [inner, outer] } else { [outer, inner] };
-    is_through_a_face.then_some(Split { is_above, between })
+    is_through_a_face.then_some(Split { is_above, between, off })
 }
 
 /// The rays of a sensor that hit something, by a number.
@@ -97,17 +99,24 @@ pub(crate) fn cuts(case: Case<'_>, wrong: &WrongRays) -> Vec<Correction> {
     for by in [CutBy::Range, CutBy::Depth] {
         let mut rays = hits(case, sensor, wrong, |place| cut_number(case, by, place));
         for is_above in [true, false] {
-            if let Some(Split { between: [low, high], .. }) = split(&mut rays, is_above) {
-                by_length.push((by, is_above, low, high));
+            if let Some(Split { between: [low, high], off, .. }) = split(&mut rays, is_above) {
+                by_length.push((by, is_above, low, high, off));
             }
         }
     }
     // What two numbers explain alike is explained by neither, unless it is a single line; but a range and the depth that goes with it
-    // say the same, and it is said of both.
+    // say the same, and it is said of both. If one of them leaves no ray on the wrong side, and the other does, it is that one.
     let is_single = lines.iter().any(|(_, _, _, lines)| *lines == 1);
-    match by_length.as_slice() {
-        &[(CutBy::Range, is_above, low, high), (CutBy::Depth, other, ..)] if is_above == other => {
-            by_length = vec![(CutBy::RangeOrDepth, is_above, low, high)];
+    match *by_length.as_slice() {
+        [(CutBy::Range, is_above, low, high, of_range), (CutBy::Depth, other, _, _, of_depth)]
+            if is_above == other =>
+        {
+            match (of_range, of_depth) {
+                (0, 0) => by_length = vec![(CutBy::RangeOrDepth, is_above, low, high, 0)],
+                (0, _) => by_length.truncate(1),
+                (_, 0) => by_length = by_length.split_off(1),
+                _ => by_length.clear(),
+            }
         }
         [_, _, ..] => by_length.clear(),
         _ => {}
@@ -123,7 +132,7 @@ pub(crate) fn cuts(case: Case<'_>, wrong: &WrongRays) -> Vec<Correction> {
         }
     }
     if lines.is_empty() {
-        for &(by, is_above, low, high) in &by_length {
+        for &(by, is_above, low, high, _) in &by_length {
             let held = held(case, sensor, wrong, (by, is_above));
             // A length that stands there is a range or a depth, and no matter of both.
             let is_told = |held: &Held| match held {

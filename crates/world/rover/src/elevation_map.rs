@@ -270,11 +270,22 @@ impl ElevationMap {
         if other.cells.iter().all(|cell| cell.stood.is_none()) {
             return;
         }
-        for point in self.points() {
-            if let Some(elevation) = other.cell(other.nearest(self.place(point))).stood {
-                self.stand_over(point, elevation);
+        for cell in other.points() {
+            if let Some(elevation) = other.cell(cell).stood {
+                for point in self.points_in(other, cell) {
+                    self.stand_over(point, elevation);
+                }
             }
         }
+    }
+
+    /// The grid points of this map that lie in a cell of another one, whose nearest grid point that cell is.
+    pub fn points_in(&self, other: &Self, cell: GridPoint) -> Vec<GridPoint> {
+        let half = (0.5 * other.size.spacing / self.size.spacing).ceil() as i64;
+        let middle = self.nearest(other.place(cell));
+        let around = (-half..=half).flat_map(|j| (-half..=half).map(move |i| (i, j)));
+        let points = around.map(|(i, j)| GridPoint { i: middle.i + i, j: middle.j + j });
+        points.filter(|point| self.contains(*point) && other.nearest(self.place(*point)) == cell).collect()
     }
 
     /// Adds to the distance driven, metres.

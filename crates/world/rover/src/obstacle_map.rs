@@ -1,6 +1,7 @@
 //! The obstacle map: a radial grid over the elevation map, tested outwards along each sector. (Paper, §7)
 
 use glam::DVec2;
+use rayon::prelude::*;
 use raypencil_scene::{Pose, SceneError, check_count, check_range};
 
 use crate::elevation_map::ElevationMap;
@@ -220,6 +221,6 @@ impl ObstacleMap {
             }
             end(grid.radius(grid.radii() - 1), Label::Visibility)
         };
-        Self { centre, sectors: (0..grid.sectors).map(sector).collect() }
+        Self { centre, sectors: (0..grid.sectors).into_par_iter().map(sector).collect() }
     }
 }

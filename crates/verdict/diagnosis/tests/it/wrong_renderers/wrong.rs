@@ -81,6 +81,7 @@ impl Wrong {
                         || is_sum(of_sensor.clone().map(|(_, all)| all.as_slice()), told)
                         || is_turn_of_all(of_sensor.clone().map(|(_, all)| all.as_slice()), told)
                         || is_line_of_all(of_sensor.clone().map(|(_, all)| all.as_slice()), told)
+                        || is_alike(of_sensor.clone().map(|(_, all)| all.as_slice()), reason, told)
                         || is_copied_plane(of_sensor.map(|(_, all)| all.as_slice()), told)
                 })
             })
@@ -122,6 +123,41 @@ fn is_line_of_all<'m>(made: impl Iterator<Item = &'m [Mistake]>, told: &Mistake)
     line(told).is_some_and(|[f, o]| {
         is_near(f - 1.0, factor - 1.0) && (is_near(o, offset) || (o - offset).abs() < 1e-9)
     })
+}
+
+/// Whether what is told says the same in other words of all that was made, and each wrong ray agrees.
+///
+/// Within one power of two half precision is a grid. Half a quantum more and rounding down is rounding to the nearest. The depth is a
+/// number times the ray's t, so that a line of one is a line of the other. One row up and one row down leave a border that is doubled.
+fn is_alike<'m>(made: impl Iterator<Item = &'m [Mistake]> + Clone, reason: &Reason, told: &Mistake) -> bool {
+    let has = |is: &dyn Fn(&Mistake) -> bool| made.clone().flatten().any(is);
+    let is_whole = reason.explained == reason.wrong && reason.broken == 0;
+    let is_line = |one: &Mistake| matches!(one, Mistake::Affine { of: Length::Range, .. });
+    let shifts = made.clone().filter_map(|all| all.iter().find_map(cells_off));
+    match told {
+        Mistake::Rounded { quantum, .. } if has(&|one| matches!(one, Mistake::HalfPrecision(_))) => {
+            is_whole && quantum.to_bits().trailing_zeros() >= 52
+        }
+        Mistake::Rounded { of, quantum, down: false } => {
+            let is_down = |one: &Mistake| matches!(one, Mistake::Rounded { of: other, quantum: own, down: true } if (other, own) == (of, quantum));
+            let is_half = |one: &Mistake| {
+                matches!(one, Mistake::Affine { of: other, factor: 1.0, offset }
+                    if other == of && (offset - 0.5 * quantum).abs() < 0.05 * quantum)
+            };
+            has(&is_down) && has(&is_half)
+        }
+        Mistake::DepthForRange => is_whole && has(&|one| *one == Mistake::ParameterForRange) && has(&is_line),
+        Mistake::Affine { of: Length::Range, .. } => {
+            is_whole
+                && reason.mistakes.contains(&Mistake::DepthForRange)
+                && has(&|one| *one == Mistake::ParameterForRange)
+        }
+        Mistake::Cut { by: CutBy::Row | CutBy::Column, held: Held::Neighbour, lines: 1, .. } => {
+            let sum = shifts.clone().fold([0.0; 2], |sum: [f64; 2], [dx, dy]| [sum[0] + dx, sum[1] + dy]);
+            is_whole && shifts.count() > 1 && sum == [0.0; 2]
+        }
+        _ => false,
+    }
 }
 
 /// Whether depths from the plane were copied to the ranges: then both begin there.
