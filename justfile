@@ -47,7 +47,7 @@ designs:
         --chart truth.upper_bound.found_share,beam.0.pitch_down_deg,terrain.generate.preset
 
 # The rover with a scan on ten grounds of each kind, without noise, with that of the camera, and with that of the sensors, and exact eyes
-# beside each: out/seeds/seeds.md. 180 drives, an hour and a half on two cores with nothing beside it; goes on where it was interrupted
+# beside each: out/seeds/seeds.md. 180 drives, hours on two cores; goes on where it was interrupted
 seeds:
     cargo run --release --bin raypencil -- sweep data/designs/rover.toml --list data/designs/noise.csv \
         --set terrain.generate.preset=smooth,viking1,pathfinder,crater_field,crevassed,worst --set terrain.generate.seed=1:10:1 \
