@@ -258,6 +258,7 @@ const END: &str = "<!-- end of the explorer -->\n";
 ///     classes: ["equal", "", "", "", "", "differs"],
 ///     groups: &[],
 ///     described_words: "",
+///     solid: None,
 /// };
 /// let page = format!("<h1>Title</h1>\n{}<footer></footer>", of_rasters.html());
 /// assert_eq!(without_explorer(&page), "<h1>Title</h1>\n<footer></footer>");
