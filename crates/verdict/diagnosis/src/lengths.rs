@@ -140,21 +140,21 @@ impl Pairs {
     }
 
     /// The largest quantum of which nearly all lengths are multiples.
-    fn rounded(&self) -> Option<Mistake> {
+    /// And half precision, which within one power of two is a grid: which of both it is, all wrong rays say, and not these few.
+    fn rounded(&self) -> Vec<Mistake> {
         let share = |quantum: f64, down: bool| {
             let is = |(stated, exact): &&(f64, f64)| is_rounded(self.storage, *stated, *exact, quantum, down);
             self.values.iter().filter(is).count() as f64 / self.values.len() as f64
         };
         let right = |(stated, exact): &&(f64, f64)| (stated - exact).abs() <= self.ulp;
         if 2 * self.values.iter().filter(right).count() > self.values.len() {
-            return None;
+            return Vec::new();
         }
         // One length everywhere, or two, is no grid of lengths.
         let stated: BTreeSet<u64> = self.values.iter().map(|(stated, _)| stated.to_bits()).collect();
         if stated.len() < MIN_ROUNDED_LENGTHS {
-            return None;
+            return Vec::new();
         }
-        // Within one power of two half precision is a grid.
         let halves = self.values.iter().filter(|(stated, exact)| is_half(*stated, *exact)).count();
         let of_halves = halves as f64 / self.values.len() as f64;
         let found = quanta().into_iter().filter(|quantum| *quantum >= QUANTUM_DIGITS * self.ulp).find_map(
@@ -164,12 +164,9 @@ impl Pairs {
                 down.map(|down| (quantum, down))
             },
         );
-        let is_plainer = |(quantum, down): &(f64, bool)| share(*quantum, *down) >= of_halves;
-        match found.filter(is_plainer) {
-            Some((quantum, down)) => Some(Mistake::Rounded { of: self.of, quantum, down }),
-            None if of_halves >= MIN_SHARE_OF_MULTIPLES => Some(Mistake::HalfPrecision(self.of)),
-            None => found.map(|(quantum, down)| Mistake::Rounded { of: self.of, quantum, down }),
-        }
+        let multiples = found.map(|(quantum, down)| Mistake::Rounded { of: self.of, quantum, down });
+        let half = (of_halves >= MIN_SHARE_OF_MULTIPLES).then_some(Mistake::HalfPrecision(self.of));
+        multiples.into_iter().chain(half).collect()
     }
 }
 
