@@ -47,13 +47,13 @@ impl Rates {
 }
 
 /// Bytes that `cast` takes for each ray, and for each face.
-const CAST: [u64; 2] = [800, 330];
+const CAST: [u64; 2] = [800, 380];
 
 /// Bytes that `cast --scans` takes for each ray: the ray itself and its time. Answers are those of one scan.
 const RAY_OF_SCANS: u64 = 100;
 
 /// Bytes that `check` takes for each ray of a pack of rays, for each of its faces, and for each point of a cloud.
-const CHECK_RAYS: [u64; 3] = [900, 330, 200];
+const CHECK_RAYS: [u64; 3] = [900, 380, 200];
 
 /// The limit of `--max-memory`, bytes; 0: none was given.
 static GIVEN: AtomicU64 = AtomicU64::new(0);
