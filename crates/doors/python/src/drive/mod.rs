@@ -199,7 +199,7 @@ impl DriveCore {
             let (taker, frames) = sync_channel(AHEAD);
             let plan = &job.plan;
             let extraction: Box<dyn StripeExtractor> = match &wish.stripes {
-                Some((folder, _)) => Box::new(StripeFile::read(folder)?),
+                Some((folder, _)) => Box::new(StripeFile::read(folder, plan.rig.beams.len())?),
                 None => Box::new(RigExtraction::new(plan.extraction, &plan.rig, &plan.sweep)),
             };
             let tee = Tee::new(extraction, images, listener);

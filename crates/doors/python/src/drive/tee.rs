@@ -60,4 +60,8 @@ impl StripeExtractor for Tee {
         }
         Ok(stripes)
     }
+
+    fn left_over(&self) -> Option<String> {
+        self.extraction.left_over()
+    }
 }
