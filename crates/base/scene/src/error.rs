@@ -42,26 +42,6 @@ fn readable(value: &str) -> String {
     text + rest
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_of_many_digits_are_powers_of_ten() {
-        let shown = |value: [f64; 2]| SceneError::new("at", format!("{value:?}"), "less").to_string();
-        assert_eq!(SceneError::new("at", -1e300, "less").to_string(), "at is -1e300: expected less");
-        assert_eq!(SceneError::new("at", 1.5e-40, "more").to_string(), "at is 1.5e-40: expected more");
-        let vector = glam::DVec2::new(2e30, 0.25);
-        assert_eq!(SceneError::new("at", vector, "less").to_string(), "at is [2e30, 0.25]: expected less");
-        // What people can read stays, and so do other texts.
-        assert_eq!(shown([123456789.125, -3.0]), "at is [123456789.125, -3.0]: expected less");
-        assert_eq!(
-            SceneError::new("name", "a.1.b", "another").to_string(),
-            "name is a.1.b: expected another"
-        );
-    }
-}
-
 /// Refuses a `value` outside `low..=high` (and NaN, which is outside of everything). `field` is asked for the name
 /// only if the value is refused.
 ///
@@ -101,4 +81,24 @@ pub fn check_count(
         return Ok(());
     }
     Err(SceneError::new(field(), count, format!("{low} to {high}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_many_digits_are_powers_of_ten() {
+        let shown = |value: [f64; 2]| SceneError::new("at", format!("{value:?}"), "less").to_string();
+        assert_eq!(SceneError::new("at", -1e300, "less").to_string(), "at is -1e300: expected less");
+        assert_eq!(SceneError::new("at", 1.5e-40, "more").to_string(), "at is 1.5e-40: expected more");
+        let vector = glam::DVec2::new(2e30, 0.25);
+        assert_eq!(SceneError::new("at", vector, "less").to_string(), "at is [2e30, 0.25]: expected less");
+        // What people can read stays, and so do other texts.
+        assert_eq!(shown([123456789.125, -3.0]), "at is [123456789.125, -3.0]: expected less");
+        assert_eq!(
+            SceneError::new("name", "a.1.b", "another").to_string(),
+            "name is a.1.b: expected another"
+        );
+    }
 }
