@@ -197,6 +197,8 @@ def hunt(name: str, mesh: str | None, terrains: int | None, seed: int, count: in
     """Hunts, prints what it finds, and writes the reproducers that ran. Returns 1 if something is found."""
     peer = peer_of(name)
     version, number, total = peer.version(), 0, 0
+    # A card that is missing is told before anything is made.
+    peer.device()
     for where, one in _meshes(mesh, terrains, seed):
         wrong, found = hunted(peer, one, count, seed, most - number)
         total += wrong
