@@ -40,100 +40,33 @@
 //! # Ok::<(), raypencil_scene::SceneError>(())
 //! ```
 //!
-//! The files, from the numbers up to the answers:
+//! The folders, from the numbers up to the answers. None uses one that stands below it in this list:
 //!
 //! ```text
-//! number, vector        intervals and exact dyadic rationals
-//! double_double         pairs of f64 with a proven error
-//! elementary            exp and atan of such pairs
-//! rounding, enclosure   exact quotients and roots, rounded; intervals of any precision
-//! arithmetic            one formula in pairs of f64 and in enclosures
-//! aspect                how badly the normal of a triangle may be rounded
-//! kleene                three-valued logic of intervals
-//! displacement          displacements of a ray, in cells
-//! ray                   the contract's rays, multiplied by their denominators
-//! edge_filter           on which side of a face's edges a ray passes, in f64
-//! face                  the contract's conditions, as signs of polynomials
-//! form, moving_ray      bilinear forms in a displacement; a ray as it is displaced
-//! face_forms, region    the conditions of a face as forms, and where they hold
-//! wide_boxes            boxes of a hierarchy, four a node, as rays walk through them
-//! bvh                   bounding volume hierarchy: the faces that a ray may meet
-//! verdict               the referee and the nearest faces of a ray
-//! through_point         the displacement whose ray passes through a point
-//! neighbourhood         all faces near a ray, and the verdict on any ray beside it
-//! subdivision           the unit square of displacements, subdivided
-//! margin, margins       how far a verdict is from changing, with a witness
-//! face_margin           the margin of the nearest faces
-//! sheet, surface_margin where the range is continuous, and the margin of that
-//! rounded_face          how wrong an honest program may be about one face
-//! rounded_line          how wrong it may be about a line of sight
-//! ruling                whether an answer is right, or admissible
-//! line_of_sight         the line from the camera to a point, as polynomials
-//! visibility            what the camera sees of a pencil's hit
-//! occluder              faces that may hide points of another
-//! visibility_margin     how far the visibility is from changing
-//! visibility_ruling     whether an answer about it is right, or admissible
-//! approximations        the paper's approximations and their effects
-//! paper, paper_raster   whether they explain a wrong hit, and how they draw a face
-//! paper_visibility      whether they explain a wrong visibility
-//! intersection, values  values of a hit, correctly rounded
-//! shares, flux          a pencil's share of the power, and its flux
-//! beam_returns          values of a pencil's return, correctly rounded
-//! certified, render     the answers of a whole sensor, and as a renderer
-//! cast                  any rays on any triangles: a kernel of its own
+//! numbers     intervals, exact dyadic rationals, pairs of f64 with a proven error; their correct rounding
+//! trees       boxes of a hierarchy: the faces that a ray may meet
+//! rays        the contract's rays, multiplied by their denominators, and rays displaced from them
+//! hits        the contract's conditions on a face, the verdict on a ray, exact values, and rulings on answers
+//! margins     how far a verdict or a surface is from changing, with a witness
+//! visibility  the line of sight from the camera to a point; its verdict, margins and rulings
+//! light       a pencil's share of the power, its flux, and the values of its return
+//! paper       whether an approximation of the paper explains a wrong answer
+//! whole       the answers of a whole sensor, and as a renderer
+//! cast        any rays on any triangles: a kernel of its own, on the numbers, boxes and bounds above
 //! ```
 //!
 //! The crate depends on `raypencil-scene` alone, and no renderer may call it.
 
-mod approximations;
-mod arithmetic;
-mod aspect;
-mod beam_returns;
-mod bvh;
 mod cast;
-mod certified;
-mod displacement;
-mod double_double;
-mod edge_filter;
-mod elementary;
-mod enclosure;
-mod face;
-mod face_forms;
-mod face_margin;
-mod flux;
-mod form;
-mod intersection;
-mod kleene;
-mod line_of_sight;
-mod margin;
+mod hits;
+mod light;
 mod margins;
-mod moving_ray;
-mod neighbourhood;
-mod number;
-mod occluder;
+mod numbers;
 mod paper;
-mod paper_raster;
-mod paper_visibility;
-mod ray;
-mod region;
-mod render;
-mod rounded_face;
-mod rounded_line;
-mod rounding;
-mod ruling;
-mod shares;
-mod sheet;
-mod short_integer;
-mod subdivision;
-mod surface_margin;
-mod through_point;
-mod values;
-mod vector;
-mod verdict;
+mod rays;
+mod trees;
 mod visibility;
-mod visibility_margin;
-mod visibility_ruling;
-mod wide_boxes;
+mod whole;
 
 #[cfg(test)]
 #[path = "../tests/common/splitmix.rs"]
@@ -143,25 +76,25 @@ mod splitmix;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-pub use approximations::{Approximations, Explained, Reason};
-pub use arithmetic::Undecided;
-pub use aspect::aspect;
-pub use beam_returns::{BeamReturns, Contribution, RoundedReturn};
 pub use cast::{CastHit, CastMeeting, CastTree, DecidedBy, ExactCast, HitGroup, SidedFace};
-pub use certified::{CertifiedMap, CertifiedReturns, PixelSum};
-pub use displacement::Displacement;
-pub use flux::Flux;
-pub use margin::{Margin, Margins};
-pub use paper_visibility::{ExplainedVisibility, VisibilityApproximations, VisibilityReason};
-pub use render::ExactRenderer;
-pub use rounded_face::{RANGE_ROUNDINGS, edge_slip};
-pub use rounding::{Format, Rounded};
-pub use ruling::{Ruling, Tolerance};
-pub use values::RoundedHit;
-pub use verdict::{Referee, RefereeTree, Verdict};
-pub use visibility::Visibility;
-pub use visibility_margin::VisibilityMargins;
-pub use visibility_ruling::VisibilityRuling;
+pub use hits::aspect::aspect;
+pub use hits::rounded_face::{RANGE_ROUNDINGS, edge_slip};
+pub use hits::ruling::{Ruling, Tolerance};
+pub use hits::values::RoundedHit;
+pub use hits::verdict::{Referee, RefereeTree, Verdict};
+pub use light::beam_returns::{BeamReturns, Contribution, RoundedReturn};
+pub use light::flux::Flux;
+pub use margins::margin::{Margin, Margins};
+pub use numbers::arithmetic::Undecided;
+pub use numbers::rounding::{Format, Rounded};
+pub use paper::approximations::{Approximations, Explained, Reason};
+pub use paper::visibility::{ExplainedVisibility, VisibilityApproximations, VisibilityReason};
+pub use rays::displacement::Displacement;
+pub use visibility::margin::VisibilityMargins;
+pub use visibility::ruling::VisibilityRuling;
+pub use visibility::seen::Visibility;
+pub use whole::certified::{CertifiedMap, CertifiedReturns, PixelSum};
+pub use whole::render::ExactRenderer;
 
 // The tests by public items are in the program of the unit tests: one executable for the crate.
 #[cfg(test)]

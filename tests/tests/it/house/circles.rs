@@ -266,6 +266,36 @@ fn no_crate_has_a_circle_of_files() {
 }
 
 #[test]
+fn no_folder_of_the_referee_uses_one_above_it() {
+    let lib =
+        std::fs::read_to_string(root().join(&crates()["referee"]).join("src/lib.rs")).expect("its page");
+    let list = lib.split("//! The folders, from").nth(1).expect("a list of folders");
+    let list =
+        list.split("//! ```text\n").nth(1).and_then(|rest| rest.split("//! ```").next()).expect("a list");
+    let floors: Vec<&str> =
+        list.lines().filter_map(|line| line.trim_start_matches("//!").split_whitespace().next()).collect();
+    let house = Crate::new(files_of("referee"));
+    let folders: BTreeSet<&str> =
+        house.0.keys().filter_map(|path| path.first()).map(String::as_str).collect();
+    assert_eq!(folders, floors.iter().copied().collect(), "the folders in the list of its first page");
+    let floor =
+        |path: &Path| floors.iter().position(|floor| path.first().is_some_and(|first| first == floor));
+    let mut seen = 0;
+    for (from, others) in house.arrows() {
+        for to in others.iter().filter(|to| !from.is_empty() && to.first() != from.first()) {
+            seen += 1;
+            assert!(
+                floor(to) < floor(from),
+                "{} uses {}, which stands above it",
+                from.join("/"),
+                to.join("/")
+            );
+        }
+    }
+    assert!(seen > 100, "only {seen} arrows between folders");
+}
+
+#[test]
 fn circles_are_recognised() {
     let house = |files: &[(&str, &str)]| {
         let parsed =

@@ -27,7 +27,7 @@ use super::ExactCast;
 use super::quads::Next;
 use super::query_ray::{Polynomial, QueryRay, RayNumbers};
 use super::triangle::{Met, Triangle};
-use crate::number::Number;
+use crate::numbers::number::Number;
 
 /// A face that is met, and the side that is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

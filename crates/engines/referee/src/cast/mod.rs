@@ -45,7 +45,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use raypencil_scene::{CastRay, FaceId, Triangles};
 
-use crate::bvh::{Bvh, RayBundle};
+use crate::trees::bvh::{Bvh, RayBundle};
 use margin::Seams;
 use quads::{Next, Quads, TOGETHER};
 use query_ray::QueryRay;

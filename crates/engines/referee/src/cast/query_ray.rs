@@ -7,10 +7,10 @@ use std::cmp::Ordering;
 use glam::DVec3;
 use raypencil_scene::CastRay;
 
-use crate::edge_filter::EdgeFilter;
-use crate::number::{Dyadic, Interval, Number};
-use crate::ray::ScaledRay;
-use crate::vector::Vector;
+use crate::hits::edge_filter::EdgeFilter;
+use crate::numbers::number::{Dyadic, Interval, Number};
+use crate::numbers::vector::Vector;
+use crate::rays::ray::ScaledRay;
 
 /// Origin o and direction d of a ray.
 #[derive(Debug, Clone)]

@@ -7,7 +7,7 @@
 //! and ray when they are stored), so it decides an edge as for a ray that is moved sideways by as much. It is charged
 //! twice that, delta = 16 u S. It finds the t of a face from n.a' / n.d: the range is then wrong by at most 36 kappa u S / c,
 //! with kappa the [aspect] of the face and c the cosine between ray and normal. It is charged twice that too. Where c is below
-//! (5 kappa + 15) u, charged twice, it may take the front of the face [for its back](crate::rounded_face).
+//! (5 kappa + 15) u, charged twice, it may take the front of the face [for its back](crate::hits::rounded_face).
 //!
 //! So a stated face F is excused if there is *one* displacement of at most delta at which the moved ray meets F exactly,
 //! within the ray's ends, and every face that it meets before F is as near to F as the errors of both ranges. A stated miss
@@ -39,10 +39,10 @@ use super::margin::{Frame, onto_face};
 use super::query_ray::QueryRay;
 use super::triangle::Triangle;
 use super::{ExactCast, moved_bundle};
-use crate::bvh::RayBundle;
-use crate::number::Interval;
-use crate::rounded_face::least_cosine;
-use crate::ruling::Ruling;
+use crate::hits::rounded_face::least_cosine;
+use crate::hits::ruling::Ruling;
+use crate::numbers::number::Interval;
+use crate::trees::bvh::RayBundle;
 use crate::{RANGE_ROUNDINGS, aspect};
 
 /// How often the errors of the rule are charged, sideways: 8 u S twice.

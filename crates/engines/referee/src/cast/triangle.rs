@@ -6,9 +6,9 @@ use glam::DVec3;
 use raypencil_scene::{FaceId, Side, Sides, Triangles};
 
 use super::query_ray::{Path, Polynomial, QueryRay, RayNumbers};
-use crate::bvh::InBox;
-use crate::number::{Dyadic, Interval, Number};
-use crate::vector::Vector;
+use crate::numbers::number::{Dyadic, Interval, Number};
+use crate::numbers::vector::Vector;
+use crate::trees::bvh::InBox;
 
 /// A face's corners, as stored.
 #[derive(Debug, Clone, Copy)]

@@ -18,11 +18,11 @@ use raypencil_scene::{CastRay, FaceId, Side, Sides};
 use super::ExactCast;
 use super::query_ray::{QueryRay, RayNumbers};
 use super::triangle::Triangle;
-use crate::double_double::{DoubleDouble, PlaneCrossing};
-use crate::intersection::{minus, sign_of};
-use crate::number::{Dyadic, Number};
-use crate::rounding::{Rounded, quotient, root};
-use crate::vector::Vector;
+use crate::hits::intersection::{minus, sign_of};
+use crate::numbers::double_double::{DoubleDouble, PlaneCrossing};
+use crate::numbers::number::{Dyadic, Number};
+use crate::numbers::rounding::{Rounded, quotient, root};
+use crate::numbers::vector::Vector;
 
 /// Where a ray meets a face. Values are correctly rounded.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,7 +9,7 @@ use super::super::triangle::Triangle;
 use super::flat::{Linear, corner_of};
 use super::region::{LazyLinear, least_size};
 use super::*;
-use crate::number::{Dyadic, Interval, Number};
+use crate::numbers::number::{Dyadic, Interval, Number};
 use crate::splitmix::SplitMix64;
 
 type Corners = Vec<[DVec3; 3]>;

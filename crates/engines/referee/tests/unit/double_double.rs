@@ -1,8 +1,8 @@
 //! Claimed errors against exact arithmetic, and roundings.
 
 use super::*;
-use crate::number::Dyadic;
-use crate::rounding;
+use crate::numbers::number::Dyadic;
+use crate::numbers::rounding;
 use dashu_int::Sign;
 use proptest::prelude::*;
 

@@ -3,9 +3,9 @@
 use std::cmp::Ordering;
 
 use super::*;
-use crate::number::{Dyadic, Number};
+use crate::numbers::number::{Dyadic, Number};
+use crate::numbers::vector::Vector;
 use crate::splitmix::SplitMix64;
-use crate::vector::Vector;
 
 /// A line from a point of f64 along a direction of f64, and a face of f32.
 struct Case {

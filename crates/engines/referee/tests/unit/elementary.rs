@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::enclosure::{Enclosure, Precision};
-use crate::number::Dyadic;
+use crate::numbers::enclosure::{Enclosure, Precision};
+use crate::numbers::number::Dyadic;
 
 const BITS: usize = 512;
 

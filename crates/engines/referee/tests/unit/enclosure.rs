@@ -1,7 +1,7 @@
 //! Enclosures against tables of constants, and their ends.
 
 use super::*;
-use crate::number::Number;
+use crate::numbers::number::Number;
 
 fn exactly(x: f64) -> Enclosure {
     Precision::new(128).magnitude(&Dyadic::of(x))

@@ -1,12 +1,12 @@
 //! Forms against exact arithmetic where they vanish, and the bounds of where a face may be met.
 
 use super::*;
-use crate::displacement::max_norm;
-use crate::face::ExactRay;
-use crate::number::{Dyadic, Number};
-use crate::ray::{Aim, MountedSensor, ScaledRay};
+use crate::hits::face::ExactRay;
+use crate::numbers::number::{Dyadic, Number};
+use crate::numbers::vector::Vector;
+use crate::rays::displacement::max_norm;
+use crate::rays::ray::{Aim, MountedSensor, ScaledRay};
 use crate::splitmix::SplitMix64;
-use crate::vector::Vector;
 use glam::DQuat;
 use raypencil_scene::{Beam, Camera, FaceId, Mounted, Pose, Profile};
 use std::cmp::Ordering;

@@ -1,7 +1,7 @@
 //! Forms of numbers that can be followed on paper, and the errors that the page derives, in its letters.
 
 use super::*;
-use crate::ray::{Aim, MountedSensor};
+use crate::rays::ray::{Aim, MountedSensor};
 use glam::DQuat;
 use raypencil_scene::{Beam, Camera, FaceId, Lens, Mounted, Pose, Profile};
 

@@ -6,8 +6,8 @@ use glam::DVec3;
 use raypencil_scene::{Atmosphere, Camera, FluxModel, Lens, Material, Mesh, Mounted, Pose, Scene, SensorId};
 
 use super::*;
-use crate::ray::{Aim, MountedSensor};
-use crate::verdict::Referee;
+use crate::hits::verdict::Referee;
+use crate::rays::ray::{Aim, MountedSensor};
 
 #[test]
 fn threads_lie_in_the_face_by_a_part_of_its_width() {

@@ -2,9 +2,9 @@
 
 use super::super::tests::holds;
 use super::*;
-use crate::number::Dyadic;
+use crate::numbers::number::Dyadic;
+use crate::numbers::vector::Vector;
 use crate::splitmix::SplitMix64;
-use crate::vector::Vector;
 
 fn point(random: &mut SplitMix64) -> DVec3 {
     DVec3::new(random.part(), random.part(), random.part())

@@ -8,7 +8,7 @@ use raypencil_scene::{
 };
 
 use super::*;
-use crate::ray::{Aim, MountedSensor};
+use crate::rays::ray::{Aim, MountedSensor};
 use crate::{Referee, Ruling, Tolerance};
 
 const UNIT_ROUNDOFFS: [f64; 3] = [f64::EPSILON / 2.0, f32::EPSILON as f64 / 2.0, 1.0 / 1024.0];

@@ -1,7 +1,7 @@
 //! Exact quotients and roots against IEEE 754.
 
 use super::*;
-use crate::number::Number;
+use crate::numbers::number::Number;
 use proptest::prelude::*;
 
 fn exactly(x: f64) -> Dyadic {

@@ -8,8 +8,8 @@ use raypencil_scene::{
 };
 
 use super::*;
-use crate::displacement::Displacement;
-use crate::ruling::{Ruling, Tolerance};
+use crate::hits::ruling::{Ruling, Tolerance};
+use crate::rays::displacement::Displacement;
 
 fn face(corners: [[f32; 3]; 3]) -> Face {
     Face { id: FaceId(0), corners }

@@ -18,8 +18,8 @@ use super::nearby::Nearby;
 use super::region::{Bounded, LazyLinear, least_size};
 use super::view::View;
 use super::{ExactCast, within};
-use crate::margin::Margin;
-use crate::number::{Dyadic, Interval, Number};
+use crate::margins::margin::Margin;
+use crate::numbers::number::{Dyadic, Interval, Number};
 
 /// A face that the direction of the ray sees from one side.
 #[derive(Clone, Copy)]
@@ -231,7 +231,7 @@ fn rounded_exact(linear: &Linear<Dyadic>, frame: &Frame<'_>) -> Linear<f64> {
     let largest = largest.iter().fold(&one, |kept, part| {
         if part.sub(kept).sign() == Some(std::cmp::Ordering::Greater) { part } else { kept }
     });
-    let part = |x: &Dyadic| crate::rounding::quotient(x, largest).double;
+    let part = |x: &Dyadic| crate::numbers::rounding::quotient(x, largest).double;
     let scale = frame.fast.scale.middle();
     Linear { c: part(&linear.c), x: part(&linear.x) * scale, y: part(&linear.y) * scale }
 }

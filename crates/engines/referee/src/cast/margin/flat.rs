@@ -4,7 +4,7 @@ use glam::DVec3;
 use raypencil_scene::Side;
 
 use super::frame::{FrameNumbers, Point};
-use crate::number::Number;
+use crate::numbers::number::Number;
 
 /// The linear function c + x (D a) + y (D b) of a displacement.
 #[derive(Debug, Clone)]

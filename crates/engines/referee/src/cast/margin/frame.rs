@@ -20,9 +20,9 @@ use glam::{DVec2, DVec3};
 use raypencil_scene::CastRay;
 
 use super::super::query_ray::QueryRay;
-use crate::number::{Dyadic, Interval, Number};
-use crate::rounding::quotient;
-use crate::vector::Vector;
+use crate::numbers::number::{Dyadic, Interval, Number};
+use crate::numbers::rounding::quotient;
+use crate::numbers::vector::Vector;
 
 /// A point in the frame: D a, D b, D t.
 #[derive(Debug, Clone)]

@@ -19,7 +19,7 @@ use raypencil_scene::FaceId;
 use super::flat::FlatFace;
 use super::frame::FrameNumbers;
 use super::segment::{AtPlace, Piece, Segment};
-use crate::number::{Interval, Number};
+use crate::numbers::number::{Interval, Number};
 
 /// A face of the surface, in the frame.
 pub(super) struct WalkedFace {

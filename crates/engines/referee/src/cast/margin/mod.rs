@@ -40,8 +40,8 @@ mod view;
 use raypencil_scene::{CastRay, Reading, Sides};
 
 use super::ExactCast;
-use crate::displacement::Displacement;
-use crate::margin::{Margin, Margins};
+use crate::margins::margin::{Margin, Margins};
+use crate::rays::displacement::Displacement;
 pub(super) use faces::onto_face;
 pub(super) use frame::Frame;
 use screen::Screen;

@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::frame::{Frame, least_size};
-use crate::bvh::{Bvh, InBox, NodeContent};
+use crate::trees::bvh::{Bvh, InBox, NodeContent};
 
 /// A node that is to be looked at, and the least displacement to its box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

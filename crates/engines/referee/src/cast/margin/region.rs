@@ -10,8 +10,8 @@ use std::cell::OnceCell;
 use std::cmp::Ordering;
 
 use super::flat::Linear;
-use crate::number::{Dyadic, Interval, Number};
-use crate::rounding::quotient;
+use crate::numbers::number::{Dyadic, Interval, Number};
+use crate::numbers::rounding::quotient;
 
 /// A number whose absolute value and quotients can be bounded in f64.
 pub(super) trait Bounded: Number {

@@ -14,7 +14,7 @@ use glam::DVec3;
 use raypencil_scene::{FaceId, Side, Triangles};
 
 use super::super::triangle::Triangle;
-use crate::bvh::Bvh;
+use crate::trees::bvh::Bvh;
 
 /// No face continues an edge, or it cannot be told which.
 const OPEN: u32 = u32::MAX;

@@ -16,8 +16,8 @@ use raypencil_scene::{FaceId, Side};
 use super::flat::{FlatFace, Linear, corner_of};
 use super::frame::{FrameNumbers, Point};
 use super::region::Bounded;
-use crate::number::{Dyadic, Interval, Number};
-use crate::rounding::quotient;
+use crate::numbers::number::{Dyadic, Interval, Number};
+use crate::numbers::rounding::quotient;
 
 /// Which part of a face's border.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -40,9 +40,9 @@ use super::screen::Screen;
 use super::segment::{Border, Cover, Piece, Place, Segment, corner_segment, cover, covered_up_to, met_at};
 use super::view::View;
 use super::{ExactCast, within};
-use crate::bvh::RayBundle;
-use crate::margin::Margin;
-use crate::number::{Dyadic, Number};
+use crate::margins::margin::Margin;
+use crate::numbers::number::{Dyadic, Number};
+use crate::trees::bvh::RayBundle;
 
 /// What waits to be looked at, nearest first.
 enum Task {
