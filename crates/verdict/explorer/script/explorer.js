@@ -1,28 +1,28 @@
 // The explorer: pictures, read-out, table and detail of rays, causes and geometry, tied together.
 
 import { button, element } from './elements.js';
-import { PageData } from './page_data.js';
-import { channelsOfModel } from './channels.js';
-import { Painter } from './painter.js';
+import { PageData } from './data/page_data.js';
+import { channelsOfModel } from './data/channels.js';
+import { Painter } from './panel/painter.js';
 import { PLAIN_DRAWING, State } from './state.js';
-import { PanelSet } from './panel_set.js';
-import { Toolbar } from './toolbar.js';
-import { Readout } from './readout.js';
-import { RayList } from './ray_list.js';
-import { Filters } from './filters.js';
-import { RayTable } from './ray_table.js';
-import { RayDetail } from './ray_detail.js';
-import { causeCards } from './causes.js';
-import { downloadText, raysAsCsv } from './ray_csv.js';
-import { countWords, counted } from './numbers.js';
-import { choiceOfHash, hashOfChoice } from './page_hash.js';
+import { PanelSet } from './panel/set.js';
+import { Toolbar } from './panel/toolbar.js';
+import { Readout } from './rays/readout.js';
+import { RayList } from './rays/list.js';
+import { Filters } from './rays/filters.js';
+import { RayTable } from './rays/table.js';
+import { RayDetail } from './rays/detail.js';
+import { causeCards } from './data/causes.js';
+import { downloadText, raysAsCsv } from './rays/csv.js';
+import { countWords, counted } from './data/numbers.js';
+import { choiceOfHash, hashOfChoice } from './data/page_hash.js';
 import { Keyboard, helpDialog } from './keyboard.js';
 import { explorerKeys } from './explorer_keys.js';
-import { Geometry } from './geometry.js';
-import { CloudView } from './cloud_view.js';
+import { Geometry } from './panel/geometry.js';
+import { CloudView } from './cloud/view.js';
 
-/** @typedef {import('./page_model.js').PageModel} PageModel */
-/** @typedef {import('./container.js').Container} Container */
+/** @typedef {import('./data/page_model.js').PageModel} PageModel */
+/** @typedef {import('./data/container.js').Container} Container */
 /** @typedef {import('./state.js').Choice} Choice */
 
 /** Time that each side is shown in a flip: milliseconds. */

@@ -1,10 +1,10 @@
 // Starts the interactive part of the page in place of fixed pictures. If it fails, these stay.
 
-import { Container } from './container.js';
-import { readPageModel } from './page_model.js';
-import { DrivePanel } from './drive_panel.js';
+import { Container } from './data/container.js';
+import { readPageModel } from './data/page_model.js';
+import { DrivePanel } from './drive/panel.js';
 import { Explorer } from './explorer.js';
-import { PageData } from './page_data.js';
+import { PageData } from './data/page_data.js';
 
 function startExplorer() {
   const root = document.getElementById('explorer');

@@ -4,17 +4,30 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::*;
 
-/// Names that a module imports, each with the module that it comes from.
-fn imports(text: &str) -> Vec<(String, String)> {
+/// Names that the module at `module` imports, each with the module that it comes from, as a path below `script/`.
+fn imports(module: &str, text: &str) -> Vec<(String, String)> {
+    let folder: Vec<&str> =
+        module.rsplit_once('/').map_or(Vec::new(), |(folder, _)| folder.split('/').collect());
     let lines = text.lines().filter(|line| line.starts_with("import "));
     lines
         .flat_map(|line| {
             let (names, from) = line
                 .strip_prefix("import { ")
-                .and_then(|rest| rest.split_once(" } from './"))
+                .and_then(|rest| rest.split_once(" } from '"))
                 .unwrap_or_else(|| panic!("an import of one line: {line}"));
             let from = from.strip_suffix("';").unwrap_or_else(|| panic!("a quoted module: {line}"));
-            names.split(", ").map(|name| (name.to_string(), from.to_string())).collect::<Vec<_>>()
+            let (above, below) = match from.strip_prefix("./") {
+                Some(below) => (0, below),
+                None => {
+                    let below = from.trim_start_matches("../");
+                    ((from.len() - below.len()) / "../".len(), below)
+                }
+            };
+            assert!(from.starts_with('.') && above <= folder.len(), "a module below script/: {line}");
+            let mut path = folder[..folder.len() - above].to_vec();
+            path.push(below);
+            let from = path.join("/");
+            names.split(", ").map(|name| (name.to_string(), from.clone())).collect::<Vec<_>>()
         })
         .collect()
 }
@@ -37,12 +50,21 @@ fn names(text: &str) -> Vec<(String, bool)> {
 
 #[test]
 fn every_file_of_the_folder_is_a_module() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/script");
-    let files: BTreeSet<String> = std::fs::read_dir(folder)
-        .expect("the folder")
-        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
-        .filter(|name| name.ends_with(".js"))
-        .collect();
+    /// Paths of the modules in `folder`, each after `before`.
+    fn files(folder: &std::path::Path, before: &str, found: &mut BTreeSet<String>) {
+        for entry in std::fs::read_dir(folder).expect("the folder") {
+            let entry = entry.expect("an entry");
+            let name = format!("{before}{}", entry.file_name().to_string_lossy());
+            if entry.path().is_dir() {
+                files(&entry.path(), &format!("{name}/"), found);
+            } else if name.ends_with(".js") {
+                found.insert(name);
+            }
+        }
+    }
+    let mut found = BTreeSet::new();
+    files(std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/script")), "", &mut found);
+    let files = found;
     let listed: BTreeSet<String> = MODULES.iter().map(|(name, _)| (*name).to_string()).collect();
     assert!(listed.len() > 10);
     assert_eq!(files, listed);
@@ -53,7 +75,7 @@ fn every_file_of_the_folder_is_a_module() {
 fn modules_stand_behind_what_they_import() {
     let mut known: BTreeMap<&str, BTreeSet<String>> = BTreeMap::new();
     for (name, text) in MODULES {
-        for (imported, from) in imports(text) {
+        for (imported, from) in imports(name, text) {
             let exported = known.get(from.as_str());
             let exported =
                 exported.unwrap_or_else(|| panic!("{name} stands before {from}, which it imports"));

@@ -1,0 +1,100 @@
+// What lies over the picture: labels and marks at their places, the bar of scale, the frame of the camera's
+// image.
+
+import { LabelLayer } from './labels.js';
+import { OverlayCanvas } from './overlay.js';
+import { cssOfColour } from './theme.js';
+import { lengthInWords, roundStep } from './words.js';
+
+/** @typedef {import('./camera.js').ViewCamera} ViewCamera */
+/** @typedef {import('./drawing.js').SceneDrawing} SceneDrawing */
+/** @typedef {import('./drawing.js').MarkShape} MarkShape */
+/** @typedef {import('./labels.js').LabelBox} LabelBox */
+/** @typedef {import('./labels.js').PlacedLabel} PlacedLabel */
+/** @typedef {import('./panel.js').ViewPanel} ViewPanel */
+/** @typedef {import('./story.js').RayStory} RayStory */
+/** @typedef {import('./theme.js').ColourName} ColourName */
+/** @typedef {import('./theme.js').Rgb3} Rgb3 */
+/** @typedef {import('./view3d.js').PageModel3d} PageModel3d */
+
+/** Device pixels per CSS pixel of the marks, at most. */
+const MARK_PIXEL_RATIO = 3;
+
+/** The layers over the canvas. */
+export class OverPicture {
+  /** @param {ViewPanel} panel @param {PageModel3d} model */
+  constructor(panel, model) {
+    this.panel = panel;
+    this.model = model;
+    this.labels = new LabelLayer(panel.labels);
+    this.overlay = new OverlayCanvas(panel.overlay);
+    this.font = `600 12px ${getComputedStyle(panel.root).fontFamily}`;
+  }
+
+  /**
+   * @param {ViewCamera} camera
+   * @param {SceneDrawing[]} drawings
+   * @param {Record<ColourName, Rgb3>} colours
+   * @param {RayStory | null} story
+   */
+  draw(camera, drawings, colours, story) {
+    const { overlay } = this;
+    const { width, height } = camera;
+    const css = (/** @type {ColourName} */ name, opacity = 1) => cssOfColour(colours[name], opacity);
+    overlay.begin(width, height, Math.min(window.devicePixelRatio || 1, MARK_PIXEL_RATIO));
+    if (this.panel.root.dataset.view === 'camera') this.#drawFrame(camera, story, css);
+    /** @type {LabelBox[]} */
+    const taken = [];
+    /** @type {{x: number, y: number, shape: MarkShape, colour: ColourName}[]} */
+    const marks = [];
+    /** @type {PlacedLabel[]} */
+    const placed = [];
+    for (const drawing of drawings) {
+      for (const { at, shape, colour } of drawing.marks) {
+        const place = camera.project(at);
+        if (!place) continue;
+        const [x, y] = place;
+        marks.push({ x, y, shape, colour });
+        taken.push({ left: x - 8, top: y - 8, right: x + 8, bottom: y + 8 });
+      }
+      for (const { at, text, colour, priority, isTick } of drawing.labels) {
+        const place = camera.project(at);
+        if (!place) continue;
+        const [x, y] = place;
+        placed.push({ x, y, text, colour: css(colour), priority, isTick: isTick === true });
+      }
+    }
+    if (camera.pose.lens.kind === 'angle') {
+      const scale = camera.metresPerPixel;
+      const length = roundStep(Math.min(130, width / 3) * scale);
+      taken.push({ left: 0, top: height - 36, right: length / scale + 30, bottom: height });
+      overlay.scaleBar(length / scale, lengthInWords(length), height, css('ink'), css('sky'), this.font);
+    }
+    overlay.leaders(this.labels.show(placed, width, height, taken));
+    for (const { x, y, shape, colour } of marks) overlay.mark(x, y, shape, css(colour), css('paper'));
+  }
+
+  /**
+   * The frame of the camera's image, and the pixel of the ray on it.
+   * @param {ViewCamera} camera
+   * @param {RayStory | null} story
+   * @param {(name: ColourName, opacity?: number) => string} css
+   */
+  #drawFrame(camera, story, css) {
+    const { lens } = camera.pose;
+    if (lens.kind !== 'image') return;
+    const { width, height, cellSize: cell } = camera;
+    const box = (/** @type {number[]} */ [u, v, across, down]) => ({
+      left: width / 2 + (u - lens.u) * cell,
+      top: height / 2 + (v - lens.v) * cell,
+      width: across * cell,
+      height: down * cell,
+    });
+    this.overlay.frame(box([0, 0, lens.width, lens.height]), width, height, css('sky', 0.72), css('soft'));
+    if (!story) return;
+    const isOwn = this.model.sensors[story.sensor].kind === 'camera';
+    const image = isOwn ? { u: story.i, v: story.j, onImage: true } : story.view?.image;
+    if (!image?.onImage) return;
+    this.overlay.cell(box([Math.floor(image.u), Math.floor(image.v), 1, 1]), css('seen'), css('paper'));
+  }
+}
