@@ -207,7 +207,7 @@ fn mitsubas_radiance_is_the_closed_form() {
 
 #[test]
 fn mitsubas_images_pass_the_z_test_and_changed_ones_fail() {
-    for pack in LIT {
+    for (axis, pack) in LIT.into_iter().enumerate() {
         let scene = scene(pack);
         let images = images(pack, "direct");
         let expected = expected_images(&scene, REALISATIONS, &Silent);
@@ -231,16 +231,13 @@ fn mitsubas_images_pass_the_z_test_and_changed_ones_fail() {
             assert!(!found.is_within(&Z_TEST_LIMITS), "{pack} {found:?}");
         }
 
-        // Sensitivity: expected images shifted by half a pixel along each axis.
-        for axis in 0..2 {
-            let mut camera = *scene.camera();
-            camera.sensor.principal_point[axis] += 0.5;
-            let shifted =
-                expected_images(&with(&scene, camera, scene.beams().to_vec()), REALISATIONS, &Silent);
-            for found in compared(&images, &shifted) {
-                assert!(found.z_rms > Z_TEST_LIMITS.max_z_rms, "{pack} {found:?}");
-                assert!(!found.is_within(&Z_TEST_LIMITS), "{pack} {found:?}");
-            }
+        // Sensitivity: expected images shifted by half a pixel, along x in the first pack and along y in the second.
+        let mut camera = *scene.camera();
+        camera.sensor.principal_point[axis] += 0.5;
+        let shifted = expected_images(&with(&scene, camera, scene.beams().to_vec()), REALISATIONS, &Silent);
+        for found in compared(&images, &shifted) {
+            assert!(found.z_rms > Z_TEST_LIMITS.max_z_rms, "{pack} {found:?}");
+            assert!(!found.is_within(&Z_TEST_LIMITS), "{pack} {found:?}");
         }
     }
 }
