@@ -79,10 +79,7 @@ impl SceneInputs {
             found.push((name, sha256(text.as_bytes())));
         }
         let changed = if settings.is_empty() { None } else { changed(&text, settings)? };
-        let file = match &changed {
-            None => Source::unchanged(&path, &text),
-            Some(changed) => Source { file: &path, text: &changed.text, settings: &changed.places },
-        };
+        let file = Source::changed(&path, &text, changed.as_ref());
         match file.kind()? {
             Kind::Rig => {
                 let plan = parse(&file)?;

@@ -47,6 +47,7 @@ mod ground;
 mod grounds;
 mod inputs;
 mod load;
+mod original_place;
 mod overrides;
 mod parse;
 mod plan;

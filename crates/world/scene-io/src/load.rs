@@ -169,10 +169,7 @@ pub fn check_settings(source: &str, settings: &[Setting]) -> Result<(), SceneIoE
     let source = SceneSource::parse(source)?;
     let (path, text) = text_of(&source)?;
     let changed = changed(&text, settings)?;
-    let file = match &changed {
-        None => Source::unchanged(&path, &text),
-        Some(changed) => Source { file: &path, text: &changed.text, settings: &changed.places },
-    };
+    let file = Source::changed(&path, &text, changed.as_ref());
     match file.kind()? {
         Kind::Rig => parse(&file).map(|_| ()),
         Kind::Resolved => parse_resolved(&file).map(|_| ()),
@@ -251,10 +248,7 @@ fn load_toml(
         [] => None,
         settings => changed(text, settings)?,
     };
-    let file = match &changed {
-        None => Source::unchanged(path, text),
-        Some(changed) => Source { file: path, text: &changed.text, settings: &changed.places },
-    };
+    let file = Source::changed(path, text, changed.as_ref());
     // A built-in ground takes part by its numbers, wherever its settings stand.
     let parts = match source {
         SceneSource::Builtin(_) => Vec::new(),

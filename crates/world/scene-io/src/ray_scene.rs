@@ -62,10 +62,7 @@ pub struct RayScene {
 pub fn load_ray_scene(path: &Path, settings: &[Setting]) -> Result<RayScene, SceneIoError> {
     let text = read_toml(path)?;
     let changed = if settings.is_empty() { None } else { changed(&text, settings)? };
-    let file = match &changed {
-        None => Source::unchanged(path, &text),
-        Some(changed) => Source { file: path, text: &changed.text, settings: &changed.places },
-    };
+    let file = Source::changed(path, &text, changed.as_ref());
     if matches!(file.kind()?, Kind::Resolved) {
         let message = "a resolved scene has no sets of rays; expected a scene file with tables `[[rays]]`";
         return Err(file.error(0..0, message));

@@ -119,6 +119,12 @@ impl Setting {
         meet(&self.parts(), &other.parts(), false)
     }
 
+    /// Whether it sets something within the table that these keys lead to.
+    pub(crate) fn is_within(&self, way: &[String]) -> bool {
+        let way: Vec<&str> = way.iter().map(String::as_str).collect();
+        meet(&way, &self.parts(), false)
+    }
+
     fn parts(&self) -> Vec<&str> {
         self.key.split('.').collect()
     }

@@ -7,34 +7,57 @@ use toml::Spanned;
 
 use raypencil_scene::SceneError;
 
+use crate::original_place::{Origin, origin};
 use crate::parse::key::Key;
 use crate::parse::plain_words::plain_words;
 use crate::scene_error::SceneIoError;
-use crate::settings::Setting;
+use crate::settings::{ChangedText, Setting};
 use crate::toml_problem::TomlProblem;
 
 /// Text of a scene file, to which every error points.
 pub(crate) struct Source<'a> {
     pub file: &'a Path,
+    /// The text that is read: the file's own, or that with settings in it.
     pub text: &'a str,
+    /// The text of the file.
+    original: &'a str,
     /// Bytes that settings put into the text; an error there is one of the setting.
-    pub settings: &'a [(Range<usize>, Setting)],
+    settings: &'a [(Range<usize>, Setting)],
 }
 
 impl<'a> Source<'a> {
     /// A file that stands as it is.
     pub(crate) fn unchanged(file: &'a Path, text: &'a str) -> Self {
-        Self { file, text, settings: &[] }
+        Self { file, text, original: text, settings: &[] }
+    }
+
+    /// A file of this text, with the settings in it if there are some.
+    pub(crate) fn changed(file: &'a Path, original: &'a str, changed: Option<&'a ChangedText>) -> Self {
+        match changed {
+            None => Self::unchanged(file, original),
+            Some(ChangedText { text, places }) => Self { file, text, original, settings: places },
+        }
     }
 
     /// Error at these bytes of the file.
     pub(crate) fn error(&self, span: Range<usize>, message: impl Into<String>) -> SceneIoError {
         let is_in = |place: &Range<usize>| place.start <= span.start && span.start < place.end;
-        match self.settings.iter().rev().find(|(place, _)| is_in(place)) {
-            Some((_, setting)) => setting.refused(message),
-            // The text is that with the settings, and so are its lines.
-            None => SceneIoError::Toml(Box::new(TomlProblem::new(self.file, self.text, span, message))),
+        if let Some((_, setting)) = self.settings.iter().rev().find(|(place, _)| is_in(place)) {
+            return setting.refused(message);
         }
+        let span = match self.settings {
+            [] => span,
+            settings => match origin(self.original, self.text, &span) {
+                Origin::File(span) => span,
+                // Of a table that the file does not have: the setting that made it misses something, or says too much.
+                Origin::Made(way) => match settings.iter().rev().find(|(_, setting)| setting.is_within(&way))
+                {
+                    Some((_, setting)) => return setting.refused(message),
+                    None => 0..0,
+                },
+            },
+        };
+        SceneIoError::Toml(Box::new(TomlProblem::new(self.file, self.original, span, message)))
     }
 
     /// Numbers that are in range one by one, but make no rays together.

@@ -154,6 +154,18 @@ fn errors_name_the_setting_or_the_line() {
     let text = "version = 1\n[vehicle]\nheading_deg = 0\n[camera]\nfocal_length_mm = -6\n";
     let message = set(text, &["vehicle.heading_deg=90"]).unwrap_err().to_string();
     assert!(message.starts_with("scene.toml:5:19: "), "{message}");
+    // Behind lines that settings put there: the line is that of the file, which has six.
+    let text = "version = 1\n[camera]\nwidth_px = 256\nheight_px = 256\n[drive]\nspeed_m_per_s = -3\n";
+    let error = set(text, &["camera.pitch_down_deg=25", "camera.yaw_left_deg=3"]).unwrap_err();
+    assert!(error.to_string().starts_with("scene.toml:6:17: "), "{error}");
+    let SceneIoError::Toml(problem) = &error else { panic!("{error:?}") };
+    assert_eq!(problem.marked(), "-3");
+    // A table that the setting made, and in which something is missing.
+    let message = set(text, &["drive.speed_m_per_s=1", "drive.sun.optical_depth=1"]).unwrap_err().to_string();
+    assert!(
+        message.starts_with("set drive.sun.optical_depth=1: ") && message.contains("missing"),
+        "{message}"
+    );
     let message = set("version = ", &["camera.pitch_down_deg=1"]).unwrap_err().to_string();
     assert!(message.starts_with("scene.toml:1:"), "{message}");
     for text in ["camera", "=3", "camera..x=3", "camera.p q=3", ".=1"] {
