@@ -107,7 +107,8 @@ pub struct SectorTruth {
     pub clear: u64,
     /// Sectors in which the true ground ends before the rover's end: not judged.
     pub off_ground: u64,
-    /// Sum of the radii up to which sectors were truly clear and called so, millimetres.
+    /// Sum of the radii up to which sectors were truly clear and called so, millimetres. It is 0 for one that is not clear at its
+    /// first radius.
     pub clear_mm: u64,
 }
 
@@ -191,7 +192,11 @@ impl SectorTruth {
             First::Edge { .. } | First::None => (f64::INFINITY, None),
         };
         self.with_obstacle += u64::from(obstruction.is_some());
-        self.clear_mm += (1000.0 * last_clear.min(radius - step).max(0.0)).round() as u64;
+        // Nearer than the first radius nothing is tested: a sector that ends there has no clear way at all.
+        let clear_way = last_clear.min(radius - step);
+        if clear_way > plan.grid.radius(0) - 0.5 * step {
+            self.clear_mm += (1000.0 * clear_way).round() as u64;
+        }
         if end.label == Label::Obstacle && end.radius < radius - within {
             self.false_obstacle += 1;
             self.false_before += u64::from(obstruction.is_some());

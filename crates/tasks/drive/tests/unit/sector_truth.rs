@@ -139,6 +139,9 @@ fn clear_beyond_it_by_more_than_a_step_is_missed_if_stripes_swept_it() {
 fn clear_ground_is_clear_and_ground_that_ends_is_not_judged() {
     let clear = counted(-3.0, 4.8, Label::Visibility, true);
     assert_eq!((clear.clear, clear.with_obstacle, clear.clear_mm), (1, 0, 4800));
+    // What ends at the first radius, 0.7 m, was clear nowhere; what ends at the second one was clear there.
+    let ways = [0.7, 0.8].map(|radius| counted(-3.0, radius, Label::Unknown, true).clear_mm);
+    assert_eq!(ways, [0, 700]);
     // From x = 5 m the ground ends 4 m ahead. A front wheel has ground below it up to 0.35 m beyond: to 4.3 m.
     let off = counted(5.0, 4.8, Label::Visibility, true);
     assert_eq!((off.off_ground, off.clear), (1, 0));
