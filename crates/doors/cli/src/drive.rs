@@ -13,7 +13,6 @@ use raypencil::io::{DriveSetup, WaypointFrame, load};
 
 use crate::args::{self, typed_renderers};
 use crate::console::{Spinner, progress_bar, say};
-use crate::memory::Rates;
 use crate::overwriting::output_folder;
 use crate::subject::contenders;
 use crate::{Outcome, Registry, Trouble, memory};
@@ -60,7 +59,7 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
     let spinner = Spinner::new();
     spinner.stage(&format!("{}: loading", command.scene.scene));
     let mut loaded = load(&command.scene.scene, &command.scene.overrides())?;
-    memory::ask(Rates::DRIVE, &loaded.scene)?;
+    memory::ask_drive(&loaded.scene, loaded.drive.as_ref().map_or(1, |drive| drive.optics.oversampling))?;
     let mut arguments = command.scene.typed();
     if !command.to.is_empty() {
         let rig = loaded.rig();

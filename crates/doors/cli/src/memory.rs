@@ -46,6 +46,9 @@ impl Rates {
         Self { command: "drive", base: 208 << 20, face: 600, pixel: 180, pencil: 1000 };
 }
 
+/// Bytes that `drive` takes for each cell of its optics: the image, and what a blur makes of it.
+const FINE_CELL: u64 = 32;
+
 /// Bytes that `cast` takes for each ray, and for each face.
 const CAST: [u64; 2] = [800, 380];
 
@@ -85,6 +88,17 @@ pub(crate) fn ask(rates: Rates, scene: &Scene) -> Result<(), Trouble> {
     let pixels = cells(SensorId::Camera);
     let pencils = scene.sensors().filter(|sensor| *sensor != SensorId::Camera).map(cells).sum();
     refuse_scene(rates, faces, pixels, pencils)
+}
+
+/// Refuses a drive for which the memory is not there: for its scene, or for the cells of its optics, `oversampling` along the side of
+/// each pixel.
+pub(crate) fn ask_drive(scene: &Scene, oversampling: u32) -> Result<(), Trouble> {
+    ask(Rates::DRIVE, scene)?;
+    let (columns, rows) = scene.size(SensorId::Camera).unwrap_or((0, 0));
+    let side = u64::from(oversampling);
+    let cells = u64::from(columns) * u64::from(rows) * side * side;
+    let words = format!("{} of optics with oversampling {side}", counted(cells, "cell", "cells"));
+    refuse_above("drive", needed(Rates::DRIVE.base, &[(cells, FINE_CELL)]), &words)
 }
 
 fn refuse_scene(rates: Rates, faces: u64, pixels: u64, pencils: u64) -> Result<(), Trouble> {

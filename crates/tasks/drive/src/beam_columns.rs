@@ -20,8 +20,11 @@ fn pencils_per_pixel(camera: &Camera, columns: f64, half_width_over_distance: f6
     columns / (2.0 * half_width_over_distance * camera.focal_length / camera.pixel_pitch[0])
 }
 
-/// Raises the columns of each beam to `wanted` pencils per pixel; never lowers them. A note tells each change. Returns
-/// the rig and the warnings about beams that stay too coarse.
+/// Raises the columns of each beam to `wanted` pencils per pixel, to an even number; never lowers them. A note tells each change.
+/// Returns the rig and the warnings about beams that stay too coarse.
+///
+/// An odd number has a middle pencil. Of a beam above the camera it lands exactly between two pixels of an even image, where two
+/// correct renderers may choose one each.
 pub(crate) fn with_columns(mut rig: Rig, wanted: f64, notes: &mut Vec<String>) -> (Rig, Vec<Warning>) {
     let camera = rig.camera.sensor;
     let mut warnings = Vec::new();
@@ -29,7 +32,7 @@ pub(crate) fn with_columns(mut rig: Rig, wanted: f64, notes: &mut Vec<String>) -
         let spread = beam.half_width / beam.grid_distance;
         let needed = wanted / pencils_per_pixel(&camera, 1.0, spread);
         let max_columns = MAX_COLUMNS.min(MAX_CELLS / f64::from(beam.rows));
-        let columns = needed.ceil().min(max_columns.floor()).max(1.0) as u32;
+        let columns = (2.0 * (0.5 * needed).ceil()).min(2.0 * (0.5 * max_columns).floor()).max(1.0) as u32;
         if columns > beam.columns {
             notes.push(format!(
                 "beam {index}: {columns} columns in place of {}, {} pencils per pixel",

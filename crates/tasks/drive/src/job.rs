@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use raypencil_rover::{Detection, DrivePlan, Rig};
-use raypencil_scene::{FluxModel, Image, Mesh};
+use raypencil_scene::{FluxModel, Image, Mesh, SceneError};
 use raypencil_scene_io::{DriveSetup, LoadedScene, SceneSource, WaypointFrame};
 use raypencil_sensor::{FixedPattern, ImageSensor, Optics, Sunlight};
 use raypencil_survey::Warning;
@@ -90,6 +90,26 @@ fn builtin_drive(rig: Rig) -> DriveSetup {
     drive
 }
 
+/// The error with the keys of `[drive]` in place of the plan's fields: `drive.grid_last_m` for `drive.grid.last`.
+fn in_keys(error: SceneError) -> SceneError {
+    let parts: Vec<&str> = error.field.split('.').collect();
+    let field = match parts.as_slice() {
+        [
+            "drive",
+            "vehicle",
+            name @ ("wheelbase" | "track" | "wheel_radius" | "wheel_width" | "clearance"),
+        ] => {
+            format!("drive.{name}_m")
+        }
+        ["drive", "grid", name @ ("first" | "step" | "last")] => format!("drive.grid_{name}_m"),
+        ["drive", "route", waypoint] if waypoint.starts_with("waypoints[") => {
+            waypoint.replace("waypoints", "drive.waypoints_m")
+        }
+        _ => return error,
+    };
+    SceneError { field, ..error }
+}
+
 impl DriveJob {
     /// Job of the drive that a scene file describes, or of the route of a built-in ground. A built-in route starts at
     /// `at` (global x and y, metres) if it is given. `arguments` are the words for [`DriveJob::arguments`].
@@ -139,7 +159,13 @@ impl DriveJob {
         warnings.extend(of_columns);
         warnings.extend(drive.threshold_ignores.map(blind_threshold));
         warnings.extend(beams_out_of_order(&plan));
-        plan.validate("drive")?;
+        plan.validate("drive").map_err(in_keys)?;
+        // A scene's vehicle may lean, for its own maps; that of a drive stands on its wheels.
+        if loaded.has_vehicle && loaded.vehicle.rotate(DVec3::Z).z < 1.0 - 1e-12 {
+            notes.push(
+                "the vehicle's pitch and roll are those of the ground, not those of [vehicle]".to_string(),
+            );
+        }
         Ok(Self {
             name: loaded.name.clone(),
             arguments,

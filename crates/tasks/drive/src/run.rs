@@ -25,7 +25,7 @@ use crate::recording::{RecordContents, Recording};
 use crate::renderer_drive::{ExposedFrame, RendererDrive};
 use crate::sector_truth::{SectorTruth, TrueGround, first_obstacles};
 use crate::sun::Sun;
-use crate::warnings::{at_the_start, nothing_measured, start_too_steep, stripes_left_over};
+use crate::warnings::{at_the_start, nothing_measured, start_too_steep, stripes_left_over, way_too_steep};
 
 /// Maximum number of animation frames: a few megabytes.
 const MAX_ANIMATION_FRAMES: u64 = 60;
@@ -291,6 +291,8 @@ pub fn drive_with(
     let scene = job.plan.rig.scene(Arc::clone(&job.mesh), at_start, air, model)?;
     let mut warnings = at_the_start(&scene);
     warnings.extend(start_too_steep(&job.plan, &at_start));
+    let stances: Vec<Pose> = frames.iter().map(|frame| frame.stance.pose()).collect();
+    warnings.extend(way_too_steep(&job.plan, &stances));
     let whereabouts = Whereabouts::of(&scene, Some(&at_start));
     let plan = survey_plan(&scene, Some(&at_start));
     warnings.extend(stripes_left_over(extractor.as_deref()));

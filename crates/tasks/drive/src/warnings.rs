@@ -34,27 +34,68 @@ pub(crate) fn at_the_start(scene: &Scene) -> Vec<Warning> {
     warnings(scene, None, None)
 }
 
-/// Warns if the vehicle stands steeper at the start, with the pose `stance`, than its own obstacle tests let it.
-pub(crate) fn start_too_steep(plan: &DrivePlan, stance: &Pose) -> Option<Warning> {
-    // Rise over distance of the vehicle's own axes.
-    let rise = |axis: DVec3| {
+/// How steep a vehicle stands: rise over distance of its own axes, along and across.
+fn steepness(stance: &Pose) -> [f64; 2] {
+    [DVec3::X, DVec3::Y].map(|axis| {
         let along = stance.rotate(axis);
         along.z.abs() / along.truncate().length().max(f64::MIN_POSITIVE)
-    };
-    let (along, across) = (rise(DVec3::X), rise(DVec3::Y));
+    })
+}
+
+/// What the vehicle's own obstacle tests allow of it.
+fn allowed(plan: &DrivePlan) -> [f64; 2] {
     let limits = plan.rules.slopes;
-    let across_limit = limits.front.min(limits.rear);
-    (along > limits.length || across > across_limit).then(|| {
-        let degrees = |slope: f64| libm::atan(slope).to_degrees();
-        let sentence = format!(
-            "the vehicle starts on too steep ground: {:.0} degrees along its length and {:.0} across, where its own tests \
-             allow {:.0} and {:.0}.",
-            degrees(along),
-            degrees(across),
-            degrees(limits.length),
-            degrees(across_limit)
-        );
+    [limits.length, limits.front.min(limits.rear)]
+}
+
+/// "17 degrees along its length and 0 across, where its own tests allow 16 and 19".
+fn steep_words(plan: &DrivePlan, steepness: [f64; 2]) -> String {
+    let degrees = |slope: f64| libm::atan(slope).to_degrees();
+    let ([along, across], [most_along, most_across]) = (steepness.map(degrees), allowed(plan).map(degrees));
+    format!(
+        "{along:.0} degrees along its length and {across:.0} across, where its own tests allow {most_along:.0} and \
+         {most_across:.0}"
+    )
+}
+
+fn is_too_steep(plan: &DrivePlan, [along, across]: [f64; 2]) -> bool {
+    let [most_along, most_across] = allowed(plan);
+    along > most_along || across > most_across
+}
+
+/// Warns if the vehicle stands steeper at the start, with the pose `stance`, than its own obstacle tests let it.
+pub(crate) fn start_too_steep(plan: &DrivePlan, stance: &Pose) -> Option<Warning> {
+    let steepness = steepness(stance);
+    is_too_steep(plan, steepness).then(|| {
+        let sentence = format!("the vehicle starts on too steep ground: {}.", steep_words(plan, steepness));
         Warning::of_scene(WarningCode::StartTooSteep, sentence)
+    })
+}
+
+/// Warns if the vehicle stands steeper on its way than its own obstacle tests let it: a drive follows its waypoints, whatever
+/// the rover thinks of the ground. `stances` are those of all frames; the first is the start.
+pub(crate) fn way_too_steep(plan: &DrivePlan, stances: &[Pose]) -> Option<Warning> {
+    let steep = || {
+        let stances = stances.iter().enumerate().skip(1).map(|(frame, pose)| (frame, pose, steepness(pose)));
+        stances.filter(|(.., steepness)| is_too_steep(plan, *steepness))
+    };
+    // How much of its limits it takes; of equal ones the first.
+    let share = |[along, across]: [f64; 2]| {
+        let [most_along, most_across] = allowed(plan);
+        (along / most_along).max(across / most_across)
+    };
+    let worst = steep().reduce(|a, b| if share(b.2) > share(a.2) { b } else { a });
+    worst.map(|(frame, pose, steepness)| {
+        let count = steep().count();
+        let place = pose.position;
+        let sentence = format!(
+            "the way leads over too steep ground: in {count} of {} frames, worst in frame {frame} at {:.2}, {:.2} m, with {}.",
+            stances.len(),
+            place.x,
+            place.y,
+            steep_words(plan, steepness)
+        );
+        Warning::of_scene(WarningCode::WayTooSteep, sentence)
     })
 }
 
@@ -92,5 +133,22 @@ mod tests {
             "{along}"
         );
         assert!(said(0.0, 0.96).unwrap().contains("0 degrees along its length and 55 across"));
+    }
+
+    #[test]
+    fn the_steepest_place_of_a_way_is_told() {
+        let plan = job(FLAT, SHORT).plan;
+        let at = |x: f64, pitch_down: f64, roll_right: f64| {
+            Attitude { heading: 0.0, pitch_down, roll_right }.at(DVec3::new(x, 2.0, 0.0))
+        };
+        // The start has a warning of its own; 0.28 and 0.33 are below the limits.
+        assert_eq!(way_too_steep(&plan, &[at(0.0, 0.9, 0.0), at(1.0, 0.28, 0.0), at(2.0, 0.0, -0.33)]), None);
+        let way = [at(0.0, 0.0, 0.0), at(1.0, 0.3, 0.0), at(2.0, -0.98, 0.0), at(3.0, 0.0, 0.36)];
+        let said = way_too_steep(&plan, &way).unwrap().to_string();
+        assert!(said.contains("in 3 of 4 frames, worst in frame 2 at 2.00, 2.00 m"), "{said}");
+        assert!(
+            said.contains("56 degrees along its length and 0 across") && said.contains("16 and 19"),
+            "{said}"
+        );
     }
 }

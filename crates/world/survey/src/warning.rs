@@ -45,6 +45,8 @@ pub enum WarningCode {
     StripesLeftOver,
     /// A drive starts where the vehicle stands steeper than it may.
     StartTooSteep,
+    /// On its way the vehicle stands steeper than its own obstacle tests allow.
+    WayTooSteep,
     /// Polygons of the terrain's file cross themselves.
     PolygonsCross,
     /// Polygons of the terrain's file are not planar.
@@ -57,7 +59,7 @@ pub enum WarningCode {
 
 impl WarningCode {
     /// All codes.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::NoHits,
         Self::FewHits,
         Self::BacksFirst,
@@ -73,6 +75,7 @@ impl WarningCode {
         Self::NothingMeasured,
         Self::StripesLeftOver,
         Self::StartTooSteep,
+        Self::WayTooSteep,
         Self::PolygonsCross,
         Self::PolygonsNotPlanar,
         Self::PostsStandOut,
@@ -97,6 +100,7 @@ impl WarningCode {
             Self::NothingMeasured => "nothing_measured",
             Self::StripesLeftOver => "stripes_left_over",
             Self::StartTooSteep => "start_too_steep",
+            Self::WayTooSteep => "way_too_steep",
             Self::PolygonsCross => "polygons_cross",
             Self::PolygonsNotPlanar => "polygons_not_planar",
             Self::PostsStandOut => "posts_stand_out",

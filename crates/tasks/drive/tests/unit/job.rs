@@ -2,12 +2,12 @@ use raypencil_rover::{
     Detection, ExposureMode, MapRules, PointLookup, RadialGrid, Rule, StartRule, StripeLocation,
     TraversabilityRules,
 };
-use raypencil_scene::Scene;
+use raypencil_scene::{Beam, Scene};
 use raypencil_scene_io::{Overrides, Setting, load, load_text};
 use raypencil_sensor::{DarkCurrent, Dust, ImageLength, Psf};
 
 use super::*;
-use crate::common::{FLAT, SHORT, driven, job, scene};
+use crate::common::{FLAT, SHORT, driven, job, scene, scene_text};
 
 #[test]
 fn the_built_in_drives_are_the_papers() {
@@ -257,4 +257,53 @@ fn a_drive_as_printed_is_the_papers_in_all_its_rules() {
         "{}",
         first.len()
     );
+}
+
+/// A small scene with these keys of `[drive]` and of `[vehicle]`.
+fn small(drive: &str, vehicle: &str) -> LoadedScene {
+    let text = scene_text("", 2, &format!("{FLAT}\n[vehicle]\n{vehicle}"), &format!("{SHORT}\n{drive}"));
+    load_text(&text, "small").expect("a scene")
+}
+
+#[test]
+fn errors_of_several_keys_together_name_the_keys() {
+    for (keys, message) in [
+        ("wheel_width_m = 2", "drive.wheel_width_m is 2: expected 0.01 to "),
+        ("wheel_radius_m = 1.5", "drive.wheel_radius_m is 1.5: expected "),
+        ("wheelbase_m = 30", "drive.grid_last_m is "),
+    ] {
+        let error = DriveJob::new(&small(keys, ""), None, "small.toml".into()).unwrap_err().to_string();
+        assert!(error.starts_with(message), "{error}");
+    }
+}
+
+#[test]
+fn a_vehicle_that_leans_in_its_file_stands_on_its_wheels_and_is_told_so() {
+    let said = |vehicle: &str| {
+        let notes = DriveJob::new(&small("", vehicle), None, "small.toml".into()).expect("a drive").notes;
+        notes.iter().any(|note| note.contains("pitch and roll are those of the ground"))
+    };
+    assert_eq!(
+        ["heading_deg = 40", "pitch_down_deg = 3", "roll_right_deg = -3"].map(said),
+        [false, true, true]
+    );
+}
+
+#[test]
+fn columns_that_a_drive_chooses_are_even() {
+    let rig = load("pyramids", &Default::default()).unwrap().rig();
+    let camera = rig.camera.sensor;
+    for wanted in [1.01, 1.3, 1.37, 4.0, 5.55] {
+        let (raised, _) = with_columns(rig.clone(), wanted, &mut Vec::new());
+        for beam in raised.beams {
+            let Beam { columns, half_width, grid_distance, .. } = beam.sensor;
+            // As many as are wanted, and no two more.
+            let needed =
+                wanted * 2.0 * half_width / grid_distance * camera.focal_length / camera.pixel_pitch[0];
+            assert!(
+                columns % 2 == 0 && (0.0..2.0).contains(&(f64::from(columns) - needed)),
+                "{columns}, {needed}"
+            );
+        }
+    }
 }

@@ -111,7 +111,7 @@ impl Source<'_> {
 
     pub(super) fn beam(&self, index: usize, keys: &BeamKeys) -> Result<(Mount, Beam), SceneIoError> {
         let (mut mount, mut beam) = default_beam(index);
-        let name = format!("beam {index}");
+        let name = format!("beam.{index}");
         let key = |key: &str| format!("{name}.{key}");
         let turns = [&keys.pitch_down_deg, &keys.yaw_left_deg, &keys.roll_right_deg];
         self.mount(&name, &keys.position_m, turns, &mut mount)?;

@@ -48,13 +48,13 @@ fn numbers_out_of_range_name_the_key_the_value_and_the_unit() {
         "[[beam]]",
         "fan_deg = 180",
         "180",
-        "`beam 0.fan_deg` is 180; expected 0.001 to 179.9 degrees",
+        "`beam.0.fan_deg` is 180; expected 0.001 to 179.9 degrees",
     );
     third_line(
         "[[beam]]",
         "wavelength_nm = 810e-9",
         "810e-9",
-        "`beam 0.wavelength_nm` is 8.1e-7; expected 10 to 1000000 nanometres",
+        "`beam.0.wavelength_nm` is 8.1e-7; expected 10 to 1000000 nanometres",
     );
     third_line("[camera]", "width_px = 0", "0", "`camera.width_px` is 0; expected 1 to 1048576 pixels");
     third_line("[camera]", "height_px = -5", "-5", "`camera.height_px` is -5; expected 1 to 1048576 pixels");
@@ -83,7 +83,7 @@ fn numbers_out_of_range_name_the_key_the_value_and_the_unit() {
         "[0, inf]",
         "`vehicle.position_m` is inf; expected -1e12 to 1e12 metres",
     );
-    third_line("[[beam]]", "position_m = [1, 2]", "[1, 2]", "`beam 0.position_m` has 2 numbers; expected 3");
+    third_line("[[beam]]", "position_m = [1, 2]", "[1, 2]", "`beam.0.position_m` has 2 numbers; expected 3");
     third_line(
         "[atmosphere]",
         "attenuation_per_m = -1",
@@ -163,7 +163,7 @@ fn words_are_listed() {
         "[[beam]]",
         "profile = \"flat\"",
         "\"flat\"",
-        "`beam 0.profile` is \"flat\"; expected one of \"paper\", \"uniform_angle\", \"gaussian\"",
+        "`beam.0.profile` is \"flat\"; expected one of \"paper\", \"uniform_angle\", \"gaussian\"",
     );
     third_line(
         "[terrain]",
@@ -268,17 +268,17 @@ fn only_a_gaussian_has_a_width() {
     let without = problem("version = 1\n[[beam]]\nprofile = \"gaussian\"\n");
     assert_eq!(
         without.message,
-        "`beam 0.profile` is \"gaussian\" without a width; expected `gaussian_half_width_deg` too"
+        "`beam.0.profile` is \"gaussian\" without a width; expected `gaussian_half_width_deg` too"
     );
     assert_eq!(without.line, 3);
     let with = problem("version = 1\n[[beam]]\n[[beam]]\ngaussian_half_width_deg = 20\n");
     assert_eq!(
         with.message,
-        "`beam 1.gaussian_half_width_deg` is given; expected it only with profile = \"gaussian\", not \"paper\""
+        "`beam.1.gaussian_half_width_deg` is given; expected it only with profile = \"gaussian\", not \"paper\""
     );
     assert_eq!((with.line, with.marked()), (4, "20"));
     let narrow = problem("version = 1\n[[beam]]\nprofile = \"gaussian\"\ngaussian_half_width_deg = 0\n");
-    assert_eq!(narrow.message, "`beam 0.gaussian_half_width_deg` is 0; expected 0.001 to 10000 degrees");
+    assert_eq!(narrow.message, "`beam.0.gaussian_half_width_deg` is 0; expected 0.001 to 10000 degrees");
 }
 
 #[test]
