@@ -48,6 +48,21 @@ def command(tmp_path: Path) -> Command:
     return run
 
 
+@pytest.fixture
+def fake_program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
+    """Puts a program of a few words of the shell in the place of the one that asks ray tracers of Rust."""
+    if sys.platform == "win32":
+        pytest.skip("it is a program of the shell")
+
+    def put(words: str) -> None:
+        file = tmp_path / f"program{len(list(tmp_path.iterdir()))}"
+        file.write_text(f"#!/bin/sh\n{words}\n", encoding="utf-8")
+        file.chmod(0o755)
+        monkeypatch.setenv("RAYPENCIL_PEERS_RUST", str(file))
+
+    return put
+
+
 @pytest.fixture(scope="session")
 def cube() -> raypencil.Mesh:
     """The cube from -1 to 1, 12 faces."""

@@ -13,6 +13,7 @@ import raypencil
 from raypencil import RaypencilError, peers
 from raypencil.peers import Hits, Peer, Unavailable
 from raypencil.peers._closed_forms import mixed_up
+from raypencil.peers._laws import LAWS
 from raypencil.peers._ours import Referee, Tracer
 from raypencil.peers._peer import Rays
 
@@ -36,10 +37,41 @@ def test_each_has_names_of_its_own_and_says_what_it_reads() -> None:
     assert len(set(NAMES)) == len(NAMES) and len({one.title for one in peers.every_peer()}) == len(NAMES)
     for one in peers.every_peer():
         assert {one.arithmetic, one.mesh_type, one.rays_type} <= {"f32", "f64"} and one.package
-        assert all(sentence.endswith(".") for sentence in one.conventions), one.name
+        assert all(sentence.endswith(".") for sentence in (*one.conventions, *one.causes)), one.name
+        # A cause says where it is found, and a remedy is against a threshold that there is.
+        assert all(re.search(r"`.+` \(|\(`.+\)", sentence) for sentence in one.causes), one.name
+        assert all(law in LAWS and side in ("below", "above") for law, side in one.remedies), one.name
     assert list(peers.LEFT_OUT) == sorted(peers.LEFT_OUT, key=str.lower)
     with pytest.raises(RaypencilError, match="no peer `embre`; expected one of embree, "):
         peers.peer("embre")
+
+
+def test_mujoco_takes_a_mesh_in_a_plane() -> None:
+    one = peers.peer("mujoco")
+    try:
+        one.version()
+    except Unavailable as missing:
+        pytest.skip(str(missing))
+    flat = raypencil.Mesh([[0, 0, 0], [4, 0, 0], [0, 4, 0], [4, 4, 0]], [[0, 1, 2], [3, 2, 1]])
+    told = one.first(flat, np.array([[1, 1, 3, 0, 0, -2, 0, np.inf]]))
+    assert told.t.tolist() == [1.5]
+
+
+def test_a_program_of_rust_that_does_not_answer_is_told(fake_program: Callable[[str], None], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("RAYPENCIL_PEERS_RUST", "/nowhere/program")
+    with pytest.raises(Unavailable, match="there is no program `/nowhere/program`: cargo install --path reference/peers/rust"):
+        peers.peer("parry").version()
+    fake_program('echo "parry 0.31.1"; echo "bvh 0.13.0"')
+    assert peers.peer("parry").version() == "0.31.1" and peers.peer("bvh").version() == "0.13.0"
+    with pytest.raises(Unavailable, match="does not know tinybvh: cargo install"):
+        peers.peer("tinybvh").version()
+    fake_program('echo "raypencil-peers-rust: faces: there is no vertex 7" >&2; exit 2')
+    with pytest.raises(Unavailable, match=r"versions` does not answer \(raypencil-peers-rust: faces"):
+        peers.peer("parry").version()
+    mesh = raypencil.Mesh([[0, 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+    ray = np.array([[1, 1, 3, 0, 0, -2, 0, np.inf]])
+    with pytest.raises(RaypencilError, match="^parry: raypencil-peers-rust: faces: there is no vertex 7$"):
+        peers.peer("parry").first(mesh, ray)
 
 
 Change = Callable[[raypencil.Mesh, Hits], Hits]

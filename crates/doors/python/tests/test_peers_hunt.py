@@ -6,9 +6,10 @@ import ctypes
 import json
 import subprocess
 import sys
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 from xml.etree import ElementTree
 
 import numpy as np
@@ -18,7 +19,7 @@ import raypencil
 from raypencil import peers
 from raypencil.peers import Counts, Hits, _command, _known, _snippets
 from raypencil.peers._figures import laws_svg, speed_svg
-from raypencil.peers._hunt import hunted, hunting_rays, reproduces, script, told_by
+from raypencil.peers._hunt import ending, hunted, hunting_rays, reproduces, script, told_by
 from raypencil.peers._laws import LAWS, Threshold, explained, sentence, share_wrong, thresholds
 from raypencil.peers._measure import Measured, machine, measure, of_answers
 from raypencil.peers._ours import Referee, Tracer
@@ -208,8 +209,23 @@ def test_rays_of_a_hunt_are_of_all_kinds_and_the_same_again() -> None:
 
 
 def test_a_reproducer_can_be_written_for_each_other_program() -> None:
-    lines = {*_snippets.PYTHON, *_snippets.NODE}
+    # tinybvh is a header of C++ that no package installs.
+    lines = {*_snippets.PYTHON, *_snippets.NODE, *_snippets.RUST, "tinybvh", "tinybvh-double"}
     assert [one.name for one in peers.every_peer() if one.registry != "here" and one.name not in lines] == []
+
+
+def test_a_reproducer_in_rust_names_its_crates(fake_program: Callable[[str], None]) -> None:
+    fake_program('echo "bvh 0.13.0"')
+    one = peers.peer("bvh")
+    case = Case(np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0.5]]), np.array([[0, 1, 2]]), np.array([1, 1, 3, 0, 0, -2.0, 0, np.inf]))
+    text = script(one, case, exact(case.question(one)))
+    assert text.startswith("// bvh 0.13.0: one ray, of which the exact answer is face 0 at t = 23/8.\n")
+    assert '// Cargo.toml: bvh = "=0.13.0"\n// Cargo.toml: nalgebra = "0.35"\nfn main() {\n' in text
+    assert "let v: Vec<[f64; 3]> = vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.5]];" in text
+    assert "let f: Vec<[u32; 3]> = vec![[0, 1, 2]];" in text
+    # Its directions are 1 long.
+    assert "let (o, d): ([f64; 3], [f64; 3]) = ([1.0, 1.0, 3.0], [0.0, 0.0, -1.0]);" in text
+    assert text.endswith('println!("told: {face} {t}");\n}\n') and ending(one) == "rs"
 
 
 @pytest.mark.parametrize("name", ["embree", "libigl", "trimesh", "vtk-static", "mitsuba-llvm", "warp", "three", "jolt"])
@@ -225,6 +241,14 @@ def test_the_lines_of_a_reproducer_ask_what_the_adapter_asks(name: str) -> None:
         question = case.question(one)
         face, t = told_by(one, script(one, case, exact(question)))
         assert reproduces(one.first(question.mesh, question.rays), face, t)
+
+
+class Known(Planted):
+    """The planted peer, whose source was read."""
+
+    name, title = "known", "Known"
+    causes = ("It takes a determinant below 1e-06 for 0 (`meet`, src/meet.c).",)
+    remedies: ClassVar[Mapping[tuple[str, str], str]] = {("scale", "below"): "make directions longer"}
 
 
 def measured(one: peers.Peer, **families: Counts | str) -> Measured:
@@ -246,6 +270,9 @@ def test_a_paragraph_says_what_is_lost_and_what_to_do() -> None:
     assert cell(one.families["edges"]) == "**4** of 6, convention 6" and cell("Error") == "refused" and cell(Counts(9)) == "0"
     assert cell(Counts(9, other=2)) == "0 of 2"
     assert "It answers all rays exactly." in paragraph(measured(Referee()))
+    # What its source says stands for what is concluded from thresholds, and its own remedy for the general one.
+    known = paragraph(measured(Known()))
+    assert "narrower than 0.0081. It takes a determinant below 1e-06 for 0 (`meet`, src/meet.c). What to do: make directions longer." in known
 
 
 def test_the_page_has_a_row_and_a_paragraph_for_each() -> None:

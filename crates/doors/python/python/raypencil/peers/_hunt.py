@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -22,6 +23,10 @@ from ._peer import Hits, Peer, Rays, segment_length
 from ._question import asked, judged
 from ._reduce import Case, Exact, exact, reduced, wrong_hit
 from .adapters.node import NODE_FOLDER, NodePeer
+from .adapters.rust import RustPeer
+
+#: Seconds that a reproducer in Rust may take: the first one builds the crates.
+_BUILDS = 1800
 
 #: What rays aim at, in turns.
 _AIMS = ("faces", "edges", "vertices", "grazing", "from far", "of any length")
@@ -66,12 +71,38 @@ def _list(numbers: object) -> str:
     return repr(np.asarray(numbers).tolist())
 
 
+def ending(peer: Peer) -> str:
+    """How the file of a peer's reproducer ends."""
+    return "mjs" if isinstance(peer, NodePeer) else "rs" if isinstance(peer, RustPeer) else "py"
+
+
+#: Before the line of a reproducer in Rust that names a crate, as Cargo.toml has it.
+_NEEDS = "// Cargo.toml: "
+
+
+def _in_rust(peer: Peer, about: str, case: Case) -> str:
+    question = case.question(peer)
+    body, more = _snippets.RUST[peer.name]
+    needs = [f'{peer.package} = "={peer.version()}"', *more]
+    ray = question.rays[0]
+    values = [
+        f"    let v: Vec<[f64; 3]> = vec!{_list(question.mesh.vertices)};",
+        f"    let f: Vec<[u32; 3]> = vec!{_list(question.mesh.faces)};",
+        f"    let (o, d): ([f64; 3], [f64; 3]) = ({_list(ray[0:3])}, {_list(ray[3:6])});",
+    ]
+    lines = [f"// {about}", *(f"{_NEEDS}{need}" for need in needs), "fn main() {", *values, body, '    println!("told: {face} {t}");', "}"]
+    return "\n".join(lines) + "\n"
+
+
 def script(peer: Peer, case: Case, truth: Exact) -> str:
     """A program that asks a peer one ray by the peer's own interface, and prints what it tells and what is exact.
 
     Raises:
         RaypencilError: there are no lines for this peer.
     """
+    about = f"{peer.title} {peer.version()}: one ray, of which the exact answer is {truth}."
+    if isinstance(peer, RustPeer) and peer.name in _snippets.RUST:
+        return _in_rust(peer, about, case)
     question = case.question(peer)
     ray = question.rays[0]
     is_node = isinstance(peer, NodePeer)
@@ -82,7 +113,6 @@ def script(peer: Peer, case: Case, truth: Exact) -> str:
     if peer.is_segment:
         length = segment_length(np.asarray(question.mesh.vertices), question.rays)
         given |= {"e": ray[0:3] + length[0] * ray[3:6], "T": length[0]}
-    about = f"{peer.title} {peer.version()}: one ray, of which the exact answer is {truth}."
     if is_node:
         imports = [line for line in lines.splitlines() if line.startswith("import ")]
         rest = [line for line in lines.splitlines() if not line.startswith("import ")]
@@ -98,16 +128,26 @@ def told_by(peer: Peer, text: str) -> tuple[int, float]:
     Raises:
         RaypencilError: it does not run, or prints something else.
     """
-    is_node = isinstance(peer, NodePeer)
+    kind, built = ending(peer), dict(os.environ)
     with tempfile.TemporaryDirectory() as folder:
-        # Node looks for packages beside the program.
         place = Path(folder)
-        if is_node:
-            (place / "node_modules").symlink_to(Path(os.environ.get(NODE_FOLDER, ".")).resolve() / "node_modules")
-        file = place / ("ray.mjs" if is_node else "ray.py")
+        file = place / f"ray.{kind}"
         file.write_text(text, encoding="utf-8")
-        words = ["node", str(file)] if is_node else [sys.executable, str(file)]
-        done = subprocess.run(words, capture_output=True, text=True, timeout=300, cwd=folder)
+        words = [sys.executable, str(file)]
+        if kind == "mjs":
+            # Node looks for packages beside the program.
+            (place / "node_modules").symlink_to(Path(os.environ.get(NODE_FOLDER, ".")).resolve() / "node_modules")
+            words = ["node", str(file)]
+        if kind == "rs":
+            if shutil.which("cargo") is None:
+                raise RaypencilError("there is no `cargo`, which builds reproducers in Rust")
+            needs = "\n".join(line.removeprefix(_NEEDS) for line in text.splitlines() if line.startswith(_NEEDS))
+            package = '[workspace]\n[package]\nname = "ray"\nedition = "2024"\n[[bin]]\nname = "ray"\npath = "ray.rs"\n[dependencies]\n'
+            (place / "Cargo.toml").write_text(f"{package}{needs}\n", encoding="utf-8")
+            # The crates are built once for all reproducers.
+            built.setdefault("CARGO_TARGET_DIR", str(Path(tempfile.gettempdir(), "raypencil-reproducers")))
+            words = ["cargo", "run", "--release", "--quiet"]
+        done = subprocess.run(words, capture_output=True, text=True, timeout=_BUILDS if kind == "rs" else 300, cwd=folder, env=built)
     lines = [line for line in done.stdout.splitlines() if line.startswith("told: ")]
     if done.returncode != 0 or len(lines) != 1:
         raise RaypencilError(f"the reproducer does not run: {(done.stderr.strip().splitlines() or ['it prints nothing'])[-1]}")
@@ -142,7 +182,7 @@ class Found:
 
     def issue(self, peer: Peer) -> str:
         """A text to paste into an issue."""
-        language = "js" if isinstance(peer, NodePeer) else "python"
+        language = {"mjs": "js", "rs": "rust", "py": "python"}[ending(peer)]
         return (
             f"{peer.title} {peer.version()} tells {self.answer()} for this ray; the exact answer is {self.exact}.\n\n"
             f"```{language}\n{self.script}```\n\n"
@@ -205,12 +245,12 @@ def hunt(name: str, mesh: str | None, terrains: int | None, seed: int, count: in
         print(f"{where}: {wrong} wrong of {count} rays by {peer.title} {version}")
         for case in found:
             number += 1
-            ending = "mjs" if isinstance(peer, NodePeer) else "py"
+            file = output / f"{name}-{number}.{ending(peer)}"
             output.mkdir(parents=True, exist_ok=True)
-            (output / f"{name}-{number}.{ending}").write_text(case.script, encoding="utf-8")
+            file.write_text(case.script, encoding="utf-8")
             (output / f"{name}-{number}.md").write_text(case.issue(peer), encoding="utf-8")
             size = f"{len(case.case.faces)} face{'s' if len(case.case.faces) > 1 else ''}"
-            print(f"  {output / f'{name}-{number}.{ending}'}: {case.aim}, {size}: {case.answer()}; exact: {case.exact}")
+            print(f"  {file}: {case.aim}, {size}: {case.answer()}; exact: {case.exact}")
         if number == most:
             break
     return 1 if total else 0

@@ -20,7 +20,7 @@ _REMEDIES = {
     ("scale", "above"): "scale a large mesh, with its rays, to a width of about 1, and t back",
     ("distance", "below"): "do not begin rays next to a surface; or begin them earlier, and drop the hits before",
     ("distance", "above"): "begin rays near the mesh: move the origin to where the ray enters its box",
-    ("angle", "below"): "do not rely on grazing rays: nothing at the call changes it",
+    ("angle", "below"): "do not rely on grazing rays",
     ("aspect", "above"): "split long thin faces, or answer rays on them otherwise",
     ("length", "below"): "make directions 1 long, and scale t",
     ("length", "above"): "make directions 1 long, and scale t",
@@ -77,9 +77,10 @@ def _families(measured: Sequence[Measured]) -> list[str]:
     return lines
 
 
-def remedies(found: Sequence[Threshold]) -> list[str]:
-    """What a user should do against thresholds, each once."""
-    said = [_REMEDIES[key] for one in found if (key := (one.law, one.side)) in _REMEDIES]
+def remedies(peer: Peer | type[Peer], found: Sequence[Threshold]) -> list[str]:
+    """What a user should do against the thresholds of a peer, each once."""
+    known = {**_REMEDIES, **peer.remedies}
+    said = [known[key] for one in found if (key := (one.law, one.side)) in known]
     return list(dict.fromkeys(said))
 
 
@@ -103,14 +104,16 @@ def paragraph(one: Measured) -> str:
         said.append(f"Of 830 rays through edges and vertices of a closed mesh {leaks} {_are(leaks)} not stopped where they should be.")
     if one.thresholds:
         said.append(sentence(one.thresholds))
-    if why := explained(one.thresholds):
+    if peer.causes:
+        said += peer.causes
+    elif why := explained(one.thresholds):
         said.append(why)
     if total.ranges:
         said.append(f"{total.ranges} range{'s' * (total.ranges != 1)} {_are(total.ranges)} off by more than rounding.")
     if one.refused:
         said.append(f"It refuses the mesh of {listed(list(one.refused))} ({_short(next(iter(one.refused.values())))}).")
     said += list(peer.conventions)
-    advice = [*peer.advice, *remedies(one.thresholds)]
+    advice = [*peer.advice, *remedies(peer, one.thresholds)]
     if leaks and not peer.advice:
         advice.append("do not count crossings of closed meshes by it")
     if advice:
@@ -158,7 +161,8 @@ def page(measured: Sequence[Measured], missing: Mapping[str, str]) -> str:
         *_table(measured),
         "",
         f"Rays a second: on 8192 faces, in the same run, on a machine of {here}; threads as each program takes them by itself,"
-        " and through Python or Node where that is how it is called. It says what a call costs, not what an engine can do. The best of"
+        " and through Python or Node where that is how it is called; crates are asked from Rust, in one thread. It says what a call costs,"
+        " not what an engine can do. The best of"
         " five runs; read the power of ten, for other work on the machine makes some rows slower." + _elsewhere(measured, here),
         "",
         f"![Wrong rays against rays a second]({SPEED_FIGURE})",
@@ -174,8 +178,9 @@ def page(measured: Sequence[Measured], missing: Mapping[str, str]) -> str:
         "",
         "## Each program",
         "",
-        "Thresholds are where half of the rays become wrong, by bisection, on the meshes of the curves. No cause is named but where one"
-        " number of a test of triangles explains several thresholds.",
+        "Thresholds are where half of the rays become wrong, by bisection, on the meshes of the curves. A cause is named where it was"
+        " found in the program's source, with its function and file, or where one number of a test of triangles explains several"
+        " thresholds.",
         "",
     ]
     for one in measured:
@@ -198,7 +203,7 @@ def page(measured: Sequence[Measured], missing: Mapping[str, str]) -> str:
         "## Make it again",
         "",
         "```sh",
-        "reference/peers/install.sh ENV                             # an environment, and the packages of npm",
+        "reference/peers/install.sh ENV                             # an environment, the packages of npm, the program for crates",
         "RAYPENCIL_PEERS_NODE=ENV/node ENV/bin/raypencil-peers table -o docs/peers.md --elsewhere reference/peers/card",
         "```",
     ]

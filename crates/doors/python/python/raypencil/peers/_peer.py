@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError
 from importlib.metadata import version as version_of
@@ -107,8 +108,12 @@ class Peer:
     meets_in_plane: ClassVar[bool] = False
     #: What it has otherwise than others, a sentence each.
     conventions: ClassVar[tuple[str, ...]] = ()
+    #: Why it loses what it loses, as its source has it: a sentence each, with the function and the file.
+    causes: ClassVar[tuple[str, ...]] = ()
     #: What a user should do that no threshold says, each a clause.
     advice: ClassVar[tuple[str, ...]] = ()
+    #: What helps against a threshold of this peer, by the law and the side, where it is not what helps in general.
+    remedies: ClassVar[Mapping[tuple[str, str], str]] = {}
     #: Whether it asks each face without a tree: then it is not asked on large meshes.
     is_brute_force: ClassVar[bool] = False
 

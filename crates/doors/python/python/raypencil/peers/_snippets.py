@@ -1,7 +1,7 @@
 """How each peer is asked one ray in a few lines of its own: what a reproducer is made of.
 
 The lines find `V` (corners), `F` (faces), `o` and `d` (origin and direction); programs that take segments also `e`, the segment's
-end, and `T`, its t. They leave `face` (-1: none, or not told) and `t`.
+end, and `T`, its t. They leave `face` (-1: none, or not told) and `t`. In Rust the names are `v`, `f`, `o` and `d`.
 """
 
 from __future__ import annotations
@@ -136,7 +136,7 @@ face, t = -1, float(np.dot(points[0] - o, d) / np.dot(d, d)) if len(points) else
 spec = mujoco.MjSpec(); mesh = spec.add_mesh(name="mesh")
 mesh.uservert, mesh.userface = np.ravel(V).tolist(), np.ravel(F).tolist()
 mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
-spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="mesh")
+spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="mesh", contype=0, conaffinity=0)
 model = spec.compile(); data = mujoco.MjData(model); mujoco.mj_forward(model, data)
 t = mujoco.mj_rayMesh(model, data, 0, np.array(o), np.array(d), None)
 face, t = -1, t if t >= 0 else float("inf")""",
@@ -203,8 +203,10 @@ const [face, t] = [-1, found ? found.timeOfImpact : Infinity];""",
 const Jolt = await load();
 const corners = new Jolt.VertexList(), triangles = new Jolt.IndexedTriangleList();
 for (const v of V) corners.push_back(new Jolt.Float3(...v));
-for (const f of F) triangles.push_back(new Jolt.IndexedTriangle(...f, 0));
-const shape = new Jolt.MeshShapeSettings(corners, triangles, new Jolt.PhysicsMaterialList()).Create().Get();
+F.forEach((f, k) => triangles.push_back(new Jolt.IndexedTriangle(...f, 0, k)));
+const made = new Jolt.MeshShapeSettings(corners, triangles, new Jolt.PhysicsMaterialList());
+made.mPerTriangleUserData = true;
+const shape = Jolt.castObject(made.Create().Get(), Jolt.MeshShape);
 const settings = new Jolt.JoltSettings(), pairs = new Jolt.ObjectLayerPairFilterTable(1);
 const broad = new Jolt.BroadPhaseLayerInterfaceTable(1, 1);
 broad.MapObjectToBroadPhaseLayer(0, new Jolt.BroadPhaseLayer(0));
@@ -218,7 +220,8 @@ const filters = [new Jolt.BroadPhaseLayerFilter(), new Jolt.ObjectLayerFilter(),
 const ray = new Jolt.RRayCast(new Jolt.RVec3(...o), new Jolt.Vec3(...e.map((x, k) => x - o[k])));
 const found = new Jolt.CastRayClosestHitCollisionCollector();
 physics.GetNarrowPhaseQuery().CastRay(ray, how, found, ...filters);
-const [face, t] = [-1, found.HadHit() ? found.mHit.mFraction * T : Infinity];""",
+const hit = found.HadHit();
+const [face, t] = hit ? [shape.GetTriangleUserData(found.mHit.mSubShapeID2), found.mHit.mFraction * T] : [-1, Infinity];""",
     "cannon-es": """import * as CANNON from "cannon-es";
 const world = new CANNON.World();
 world.addBody(new CANNON.Body({ mass: 0, shape: new CANNON.Trimesh(V.flat(), F.flat()) }));
@@ -226,4 +229,46 @@ const found = new CANNON.RaycastResult();
 const way = { skipBackfaces: false, checkCollisionResponse: false };
 world.raycastClosest(new CANNON.Vec3(...o), new CANNON.Vec3(...e), way, found);
 const [face, t] = [-1, found.hasHit ? found.distance / Math.hypot(...d) : Infinity];""",
+}
+
+_PARRY = """    use {crate}::{{math::Vector, query::{{Ray, RayCast}}, shape::TriMesh}};
+    let vector = |p: [f64; 3]| Vector::new(p[0] as {real}, p[1] as {real}, p[2] as {real});
+    let mesh = TriMesh::new(v.into_iter().map(vector).collect(), f).unwrap();
+    let found = mesh.cast_local_ray_and_get_normal(&Ray::new(vector(o), vector(d)), {real}::MAX, false);
+    let (face, t) = found.map_or((-1, f64::INFINITY), |hit| (hit.subshape as i64, hit.time_of_impact as f64));"""
+
+#: The test alone: a tree only finds the faces whose boxes a ray meets.
+_BVH = """    use nalgebra::{{Point3, Vector3}};
+    let point = |p: [f64; 3]| Point3::from(p.map(|x| x as {real}));
+    let ray = bvh::ray::Ray::new(point(o), Vector3::from(d.map(|x| x as {real})));
+    let (mut face, mut t) = (-1, f64::INFINITY);
+    for (k, corners) in f.iter().enumerate() {{
+        let [a, b, c] = corners.map(|index| point(v[index as usize]));
+        // Its test leaves out backs.
+        let at = ray.intersects_triangle(&a, &b, &c).distance.min(ray.intersects_triangle(&a, &c, &b).distance) as f64;
+        if at < t {{
+            (face, t) = (k as i64, at);
+        }}
+    }}"""
+
+_OBVHS = """    use obvhs::{{ray::{{Ray, RayHit}}, triangle::Triangle, BvhBuildParams}};
+    let vector = |p: [f64; 3]| glam::Vec3A::from_array(p.map(|x| x as f32));
+    let triangle = |[a, b, c]: [u32; 3]| [a, b, c].map(|index| vector(v[index as usize]));
+    let triangles: Vec<Triangle> = f.into_iter().map(triangle).map(|[v0, v1, v2]| Triangle {{ v0, v1, v2 }}).collect();
+    let tree = obvhs::{build}(&triangles, BvhBuildParams::medium_build(), &mut Default::default());
+    let mut hit = RayHit::none();
+    let is_hit = tree.ray_traverse(Ray::new_inf(vector(o), vector(d.map(|x| x + 0.0))), &mut hit, |ray, id| {{
+        triangles[tree.primitive_indices[id] as usize].intersect(ray)
+    }});
+    let (face, t) =
+        if is_hit {{ (tree.primitive_indices[hit.primitive_id as usize] as i64, hit.t as f64) }} else {{ (-1, f64::INFINITY) }};"""
+
+#: In Rust, the inside of `main`; and the crates that it needs beside the peer's own. tinybvh, a header of C++, has none.
+RUST = {
+    "parry": (_PARRY.format(crate="parry3d", real="f32"), ()),
+    "parry-f64": (_PARRY.format(crate="parry3d_f64", real="f64"), ()),
+    "bvh": (_BVH.format(real="f32"), ('nalgebra = "0.35"',)),
+    "bvh-f64": (_BVH.format(real="f64"), ('nalgebra = "0.35"',)),
+    "obvhs": (_OBVHS.format(build="bvh2::builder::build_bvh2_from_tris"), ('glam = "0.34"',)),
+    "obvhs-cwbvh": (_OBVHS.format(build="cwbvh::builder::build_cwbvh_from_tris"), ('glam = "0.34"',)),
 }

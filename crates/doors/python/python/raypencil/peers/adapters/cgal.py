@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import ClassVar
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ..._mesh import Mesh
 from .._peer import Built, Hits, Peer, Rays, hits, need
+
+
+_AS_LONG = "make the direction as long as the way to the mesh, and scale t: the second point is then kept well"
 
 
 class Cgal(Peer):
@@ -23,6 +29,7 @@ class Cgal(Peer):
         "`Ray_3` keeps a second point, origin plus direction: what a direction has below the origin's last digit is lost.",
         "The exact set of faces is asked (`all_intersections`), for the bindings have no call for the first.",
     )
+    remedies: ClassVar[Mapping[tuple[str, str], str]] = {("distance", "above"): _AS_LONG, ("length", "below"): _AS_LONG}
 
     def build(self, mesh: Mesh) -> Built:
         kernel, trees = need("CGAL.CGAL_Kernel", self.package), need("CGAL.CGAL_AABB_tree", self.package)

@@ -11,10 +11,18 @@ from ..._mesh import Mesh
 from .._peer import Built, Hits, Peer, Rays, hits, need, single
 
 
+#: The cause of Embree's threshold, wherever Embree is asked. A face alone, which has no box above it, is met by any direction.
+SHORT_PARTS = (
+    "Embree's test of boxes takes a part of the direction below 1e-18 for 1e-18 (`zero_fix`, common/math/vec3fa.h; `min_rcp_input`,"
+    " common/math/constants.h)."
+)
+
+
 class Embree(Peer):
     """Embree as trimesh and others build its scenes: without its flag for robust traversal."""
 
     name, title, package = "embree", "Embree", "embreex"
+    causes = (SHORT_PARTS,)
     arithmetic = mesh_type = rays_type = "f32"
     is_robust = False
 

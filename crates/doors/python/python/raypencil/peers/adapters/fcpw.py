@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import ClassVar
+
 import numpy as np
 
 from ..._mesh import Mesh
@@ -14,6 +17,13 @@ class Fcpw(Peer):
     name, title, package = "fcpw", "FCPW", "fcpw"
     arithmetic = mesh_type = rays_type = "f32"
     is_unit = True
+    causes = (
+        "Its test of triangles takes a determinant below 1.2e-07, the epsilon of single precision, for 0 (`Triangle::intersect`,"
+        " include/fcpw/geometry/triangles.inl).",
+    )
+    remedies: ClassVar[Mapping[tuple[str, str], str]] = {
+        ("scale", "below"): "make directions 1e12 long on a small mesh, and scale t: the determinant grows with them",
+    }
 
     def build(self, mesh: Mesh) -> Built:
         fcpw = need("fcpw", self.package)

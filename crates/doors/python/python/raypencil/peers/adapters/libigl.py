@@ -6,6 +6,19 @@ import numpy as np
 
 from ..._mesh import Mesh
 from .._peer import Built, Hits, Peer, Rays, hits, need, single
+from .embree import SHORT_PARTS
+
+_CAUSES = (
+    "Its test of triangles takes a determinant below 1e-06 for 0, which is the product of two edges, the direction's length and the"
+    " sine of the angle (`IGL_RAY_TRI_EPSILON`, include/igl/raytri.c).",
+)
+_LONGER = "make directions 1e12 long, and scale t: the determinant grows with them"
+_REMEDIES = {
+    ("scale", "below"): _LONGER,
+    ("angle", "below"): _LONGER,
+    ("aspect", "above"): _LONGER,
+    ("length", "below"): _LONGER,
+}
 
 
 class LibiglTree(Peer):
@@ -13,6 +26,7 @@ class LibiglTree(Peer):
 
     name, title, package = "libigl", "libigl, AABB", "libigl"
     conventions = ("It tells t in single precision, whatever it computes in.",)
+    causes, remedies = _CAUSES, _REMEDIES
     arithmetic = mesh_type = rays_type = "f64"
 
     def build(self, mesh: Mesh) -> Built:
@@ -41,6 +55,7 @@ class LibiglBruteForce(Peer):
         "It tells t in single precision, whatever it computes in.",
         "`ray_mesh_intersect(..., first=True)` tells a hit of unwritten memory where there is none; so all hits are asked.",
     )
+    causes, remedies = _CAUSES, _REMEDIES
     arithmetic = mesh_type = rays_type = "f64"
     is_brute_force = True
 
@@ -66,6 +81,7 @@ class LibiglEmbree(Peer):
     """`igl.embree.EmbreeIntersector`."""
 
     name, title, package = "libigl-embree", "libigl, Embree", "libigl"
+    causes = (SHORT_PARTS,)
     arithmetic = mesh_type = rays_type = "f32"
 
     def build(self, mesh: Mesh) -> Built:

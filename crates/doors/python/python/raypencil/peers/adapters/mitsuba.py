@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +10,18 @@ from numpy.typing import NDArray
 from ..._mesh import Mesh
 from .._peer import Built, Hits, Peer, Rays, hits, need, single
 from ._card import card
+from .embree import SHORT_PARTS
 
 
 class MitsubaScalar(Peer):
     """`scene.ray_intersect_preliminary`, one ray at a time."""
 
     name, title, package = "mitsuba-scalar", "Mitsuba, scalar_rgb", "mitsuba"
+    causes: ClassVar[tuple[str, ...]] = (
+        SHORT_PARTS,
+        "Its Embree is built to leave out rays with a part of origin or direction beyond 1.844e18 (`EMBREE_IGNORE_INVALID_RAYS`,"
+        " ext/CMakeLists.txt; `FLT_LARGE`, Embree's common/math/constants.h).",
+    )
     arithmetic = mesh_type = rays_type = "f32"
     variant = "scalar_rgb"
 
@@ -76,6 +82,7 @@ class MitsubaCuda(MitsubaLlvm):
     """The same on a graphics card, where OptiX finds the hits. All but a card's driver comes with the package."""
 
     name, title, variant = "mitsuba-cuda", "Mitsuba, cuda_ad_rgb", "cuda_ad_rgb"
+    causes = ()
 
     def device(self) -> str:
         return card()

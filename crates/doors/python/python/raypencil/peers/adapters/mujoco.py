@@ -16,7 +16,11 @@ class MuJoCo(Peer):
     rays_type = "f64"
     conventions = (
         "It tells no face; t alone is judged.",
-        "It refuses meshes whose vertices lie in a plane, for it makes a hull of them.",
+        "`contype` and `conaffinity` are 0 here: of a mesh that may collide it makes a hull, and refuses one whose vertices lie in a plane.",
+    )
+    causes = (
+        "Its test of triangles takes direction times twice the face's area below 1e-15 for 0 (`ray_triangle`, src/engine/engine_ray.c;"
+        " `mjMINVAL`); the shortest direction is the root of that.",
     )
 
     def build(self, mesh: Mesh) -> Built:
@@ -27,7 +31,7 @@ class MuJoCo(Peer):
         made.userface = mesh.faces.ravel().tolist()
         # Of an open mesh: the volume's inertia would be that of nothing.
         made.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
-        spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="mesh", name="geom")
+        spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="mesh", name="geom", contype=0, conaffinity=0)
         model = spec.compile()
         data = mujoco.MjData(model)
         mujoco.mj_forward(model, data)

@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import ClassVar
 
@@ -105,13 +106,20 @@ class Babylon(NodePeer):
     mesh_type = "f32"
     # Its distance is a length, whatever the direction's is.
     is_unit = True
+    causes = (
+        "Its test of the mesh's box takes a part of the direction below 1e-07 for 0 (`Ray.intersectsBoxMinMax`, Culling/ray.core.js): it is"
+        " the box that is missed, and the faces are not asked.",
+    )
+    remedies: ClassVar[Mapping[tuple[str, str], str]] = {
+        ("angle", "below"): "leave out the test of the box: the last argument of `Mesh.intersects`, `skipBoundingInfo`, is then true",
+    }
 
 
 class Rapier(NodePeer):
     """`Collider.castRayAndGetNormal` of a `TriMesh`, which is parry's in single precision. It tells the side of a face, not which it is."""
 
     name, title, package, script = "rapier", "Rapier (parry)", "@dimforge/rapier3d-compat", "rapier.mjs"
-    conventions = ("`featureId` is the side of the face, not its number; so t alone is judged.",)
+    conventions = ("`featureId` is the side of the face, not its number; so t alone is judged. parry itself tells the face.",)
     arithmetic = mesh_type = rays_type = "f32"
 
 
@@ -127,9 +135,18 @@ class CannonEs(NodePeer):
 
 
 class Jolt(NodePeer):
-    """`MeshShape.CastRay`, which tells no face that can be counted."""
+    """`NarrowPhaseQuery.CastRay` on a body of a `MeshShape`, whose faces keep their numbers as user data."""
 
     name, title, package, script = "jolt", "Jolt Physics", "jolt-physics", "jolt.mjs"
-    conventions = ("It tells a number of its own for each face, which does not say which it is; so t alone is judged.",)
+    conventions = (
+        "It numbers faces anew; theirs are kept as user data (`mPerTriangleUserData`), as here.",
+        "It keeps corners in 21 bits of the mesh's box, which is within what rounding excuses"
+        " (`TriangleCodecIndexed8BitPackSOA4Flags.h`).",
+    )
+    causes = (
+        "It drops faces with a cross product of edges at most 1e-06 long (`IndexedTriangle::IsDegenerate`,"
+        " Jolt/Geometry/IndexedTriangle.h), and refuses a mesh that has no others.",
+    )
+    advice = ("scale a mesh with small faces, with its rays, and t back", "do not count crossings of closed meshes by it")
     arithmetic = mesh_type = rays_type = "f32"
     is_segment = True

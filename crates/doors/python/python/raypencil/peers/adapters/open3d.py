@@ -7,12 +7,14 @@ from numpy.typing import NDArray
 
 from ..._mesh import Mesh
 from .._peer import Built, Hits, Peer, Rays, hits, need, single
+from .embree import SHORT_PARTS
 
 
 class Open3D(Peer):
     """`RaycastingScene.cast_rays`, whose t is in lengths of the direction."""
 
     name, title, package = "open3d", "Open3D", "open3d"
+    causes = (SHORT_PARTS,)
     arithmetic = mesh_type = rays_type = "f32"
 
     def build(self, mesh: Mesh) -> Built:

@@ -2,16 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import ClassVar
+
 import numpy as np
 
 from ..._mesh import Mesh
 from .._peer import Built, Hits, Peer, Rays, hits, need
 
 
+_AS_LONG = "make directions about as long as the way to the mesh, and scale t"
+
+
 class Panda3D(Peer):
     """`CollisionRay` on a `CollisionPolygon` for each face. Its packages have single precision."""
 
     name, title, package = "panda3d", "Panda3D", "panda3d"
+    causes = (
+        "`LPlane::intersects_line` (panda/src/mathutil/plane_src.I) takes unit normal times direction below 1e-06 for 0.",
+        "`CollisionRay::compute_internal_bounds` (panda/src/collide/collisionRay.cxx) keeps a second point, origin plus direction: what a"
+        " direction has below the origin's last digit is lost.",
+    )
+    remedies: ClassVar[Mapping[tuple[str, str], str]] = {
+        ("scale", "above"): _AS_LONG,
+        ("length", "below"): _AS_LONG,
+        ("length", "above"): _AS_LONG,
+    }
     arithmetic = mesh_type = rays_type = "f32"
     is_brute_force = True
 

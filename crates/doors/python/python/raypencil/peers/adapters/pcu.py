@@ -6,12 +6,14 @@ import numpy as np
 
 from ..._mesh import Mesh
 from .._peer import Built, Hits, Peer, Rays, hits, need, single
+from .embree import SHORT_PARTS
 
 
 class PointCloudUtils(Peer):
-    """`ray_mesh_intersection`."""
+    """`RayMeshIntersector.intersect_rays`."""
 
     name, title, package = "pcu", "point-cloud-utils", "point-cloud-utils"
+    causes = (SHORT_PARTS,)
     arithmetic = mesh_type = rays_type = "f32"
 
     def build(self, mesh: Mesh) -> Built:

@@ -14,6 +14,10 @@ class Raylib(Peer):
     name, title, package = "raylib", "raylib", "raylib"
     arithmetic = mesh_type = rays_type = "f32"
     is_unit = True
+    causes = (
+        "`GetRayCollisionTriangle` (src/rmodels.c) takes a determinant below 1e-06 for 0, and a hit nearer than 1e-06 for none"
+        " (`EPSILON`).",
+    )
     is_brute_force = True
 
     def build(self, mesh: Mesh) -> Built:

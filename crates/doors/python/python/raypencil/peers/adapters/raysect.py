@@ -15,7 +15,7 @@ class Raysect(Peer):
     arithmetic = mesh_type = "f32"
     rays_type = "f64"
     is_unit = True
-    conventions = ("It refuses faces without an area, unless it is told to leave them out (`tolerant`), as here.",)
+    conventions = ("It leaves out faces without an area; with `tolerant=False` it refuses them.",)
 
     def build(self, mesh: Mesh) -> Built:
         core, primitive = need("raysect.core", self.package), need("raysect.primitive", self.package)

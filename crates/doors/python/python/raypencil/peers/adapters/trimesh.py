@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Mapping
 from typing import ClassVar
 
 import numpy as np
@@ -13,6 +14,9 @@ from ..._mesh import Mesh
 from .._peer import Built, Hits, Peer, Rays, Unavailable, hits, need
 
 
+_AS_LONG = "make directions as long as the way to the mesh, and scale t"
+
+
 class Trimesh(Peer):
     """`ray_triangle.RayMeshIntersector`: candidates by an R-tree, planes and barycentric weights in NumPy."""
 
@@ -20,6 +24,17 @@ class Trimesh(Peer):
     arithmetic: ClassVar[Arithmetic] = "f64"
     mesh_type: ClassVar[Arithmetic] = "f64"
     rays_type: ClassVar[Arithmetic] = "f64"
+    causes: ClassVar[tuple[str, ...]] = (
+        "`planes_lines` (intersections.py) drops rays whose direction times the face's unit normal is at most 1e-05; `unitize` (util.py),"
+        " which makes that normal, takes a cross product at most 1e-13 long for 0.",
+        "`ray_bounds` (ray/ray_triangle.py) looks for faces from t = 1e-05 on: what is nearer is lost.",
+        "`points_to_barycentric` (triangles.py) subtracts products of squared edges, which cancel on thin faces.",
+    )
+    remedies: ClassVar[Mapping[tuple[str, str], str]] = {
+        ("angle", "below"): "make directions longer for grazing rays, while no hit is nearer than 1e-05 of them",
+        ("length", "below"): _AS_LONG,
+        ("length", "above"): _AS_LONG,
+    }
     module = "trimesh.ray.ray_triangle"
 
     def build(self, mesh: Mesh) -> Built:
@@ -56,6 +71,16 @@ class TrimeshEmbree(Trimesh):
     arithmetic = "f32"
     mesh_type = "f32"
     rays_type = "f32"
+    conventions = (
+        "Faces with their points are asked (`intersects_id(..., return_locations=True)`), for t is that of the point;"
+        " `intersects_first` tells faces alone, and is not concerned by the size of the mesh.",
+    )
+    causes = (
+        "`unitize` (util.py), which makes the faces' normals and the directions 1 long, takes a vector at most 1e-13 long for 0; without a"
+        " normal a face has no points.",
+    )
+    advice = ("ask `intersects_first` where faces are enough",)
+    remedies: ClassVar[Mapping[tuple[str, str], str]] = {}
     module = "trimesh.ray.ray_pyembree"
 
     def build(self, mesh: Mesh) -> Built:

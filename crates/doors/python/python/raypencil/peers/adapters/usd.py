@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import ClassVar
+
 import numpy as np
 
 from ..._mesh import Mesh
 from .._peer import Built, Hits, Peer, Rays, hits, need
+
+
+_LONGER = "make directions 1e6 long, and scale t: the product grows with them"
 
 
 class Usd(Peer):
@@ -14,6 +20,12 @@ class Usd(Peer):
     name, title, package = "usd", "OpenUSD, GfRay", "usd-core"
     arithmetic = mesh_type = rays_type = "f64"
     is_brute_force = True
+    causes = (
+        "`GfRay::Intersect` (pxr/base/gf/ray.cpp) takes normal times direction below 1e-10 (`GF_MIN_VECTOR_LENGTH`) for 0, and the normal"
+        " of a face with less than half of that for area is not made 1 long: the face's plane is then elsewhere.",
+    )
+    advice = ("scale a mesh with faces smaller than 5e-11, with its rays, and t back",)
+    remedies: ClassVar[Mapping[tuple[str, str], str]] = {("angle", "below"): _LONGER, ("length", "below"): _LONGER}
 
     def build(self, mesh: Mesh) -> Built:
         gf = need("pxr.Gf", self.package)

@@ -18,6 +18,10 @@ class VtkObbTree(Peer):
     is_segment = True
     meets_in_plane = True
     conventions: ClassVar[tuple[str, ...]] = ("It takes a tolerance, which is 0 here.",)
+    causes: ClassVar[tuple[str, ...]] = (
+        "`vtkTriangle::IntersectWithLine` (Common/DataModel/vtkTriangle.cxx) rounds the point on the plane, and then asks whether it is"
+        " within the tolerance of the triangle: beside an edge it may be in neither face.",
+    )
     advice: ClassVar[tuple[str, ...]] = (
         "give a tolerance of about 1e-12 of the mesh's width, as in the row *with tolerance*: then rays through edges are stopped",
     )
@@ -75,6 +79,7 @@ class VtkTolerance(VtkStaticCellLocator):
 
     name, title = "vtk-tolerance", "VTK, static cell locator, with tolerance"
     conventions = ("Its tolerance is 1e-12 of the mesh's width here.",)
+    causes = ()
     advice = ()
     tolerance = 1e-12
 
