@@ -251,7 +251,7 @@ def page(families, results, skipped, asked, own):
         "",
         "Made by `python3 reference/hard_rays.py RAYPENCIL -o docs/hard-rays.md` from the rays of `data/rays/hard`"
         " ([what they are](../data/rays/README.md)). The truth is `raypencil cast`, which agrees bit for bit with"
-        " `reference/exact_cast.py`. [peers.md](peers.md) asks 29 packages, and finds from where on each loses rays.",
+        " `reference/exact_cast.py`. [peers.md](peers.md) asks 30 packages, and finds from where on each loses rays.",
         "",
         "Tracers in single precision are asked what they can read: mesh and rays are rounded to f32 first, and the truth is"
         " that of the rounded question. trimesh and raypencil's tracer compute in f64. A cell counts wrong first hits:"

@@ -7,6 +7,7 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, ClassVar
@@ -16,6 +17,7 @@ import numpy as np
 import pytest
 
 import raypencil
+from conftest import ROOT
 from raypencil import peers
 from raypencil.peers import Counts, Hits, _command, _known, _snippets
 from raypencil.peers._figures import laws_svg, speed_svg
@@ -219,7 +221,7 @@ def test_a_reproducer_in_rust_names_its_crates(fake_program: Callable[[str], Non
     one = peers.peer("bvh")
     case = Case(np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0.5]]), np.array([[0, 1, 2]]), np.array([1, 1, 3, 0, 0, -2.0, 0, np.inf]))
     text = script(one, case, exact(case.question(one)))
-    assert text.startswith("// bvh 0.13.0: one ray, of which the exact answer is face 0 at t = 23/8.\n")
+    assert text.startswith("// bvh (Rust) 0.13.0: one ray, of which the exact answer is face 0 at t = 23/8.\n")
     assert '// Cargo.toml: bvh = "=0.13.0"\n// Cargo.toml: nalgebra = "0.35"\nfn main() {\n' in text
     assert "let v: Vec<[f64; 3]> = vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.5]];" in text
     assert "let f: Vec<[u32; 3]> = vec![[0, 1, 2]];" in text
@@ -281,9 +283,24 @@ def test_the_page_has_a_row_and_a_paragraph_for_each() -> None:
     assert "| Planted | 1.0 | 180 | 2 | 0 | 0 | **2** | 0 | 0 | 1,200 |" in text and "\n**Planted** (" in text
     assert "* embree: not asked here (pip install embreex)." in text and all(name in text for name in peers.LEFT_OUT)
     assert all(f"| {name} |" in text for name in raypencil.testing.hard_rays())
+    # The machine is that of most; the others are named.
+    elsewhere = replace(several[0], machine="a card, 16 cores")
+    assert "on a machine of one machine;" in text and "On another machine" not in text
+    told = page([elsewhere, *several], {})
+    assert "on a machine of one machine;" in told and "On another machine (a card, 16 cores) were asked: Planted." in told
     for drawn in (laws_svg(several), speed_svg(several)):
         assert ElementTree.fromstring(drawn).tag.endswith("svg") and "Planted<" in drawn
     assert 'fill="#cccccc"' in laws_svg(several)
+
+
+def test_the_page_of_the_docs_has_the_words_of_the_adapters_of_what_is_kept() -> None:
+    folders = [ROOT / "reference" / "peers" / name for name in ("kept", "card")]
+    names = [one.name for one in peers.every_peer()]
+    assert sorted(file.stem for folder in folders for file in folder.glob("*.json")) == sorted(names)
+    several, missing = measure(names, folders[0], lambda line: pytest.fail(line), folders[1])
+    if missing:
+        pytest.skip(f"the questions are others than those of the page: {missing}")
+    assert page(several, {}) == (ROOT / "docs" / "peers.md").read_text(encoding="utf-8")
 
 
 def test_a_process_that_dies_is_followed_by_another() -> None:
@@ -320,8 +337,8 @@ def test_the_command(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None
     other.mkdir()
     (other / "tracer.json").write_text(json.dumps({**answers, "machine": "a card, 16 cores"}))
     assert _command.main(["table", "tracer", "--elsewhere", str(other)]) == 0
-    assert "On another machine (a card, 16 cores) were asked: raypencil's tracer." in capsys.readouterr().out
-    assert "On another machine" not in text
+    assert "on a machine of a card, 16 cores;" in capsys.readouterr().out
+    assert f"on a machine of {machine()};" in text and "On another machine" not in text
     assert _command.main(["table", "tracer", "--elsewhere", str(tmp_path / "none")]) == 2 and "none` is no folder" in capsys.readouterr().err
     # Answers to other questions are refused.
     (kept / "tracer.json").write_text('{"jobs": [], "version": "", "machine": "", "answers": []}')

@@ -112,7 +112,7 @@ def measure(
                 missing[name] = gone[0]
                 continue
             data = {"version": version, "machine": machine(device), "jobs": jobs(), "answers": answers}
-            file.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+            file.write_text(json.dumps(data) + "\n", encoding="utf-8")
         data = json.loads(file.read_text(encoding="utf-8"))
         if data["jobs"] == jobs() and "machine" in data:
             measured.append(of_answers(one, data["version"], data["machine"], data["answers"]))

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from ..testing import hard_rays
 from ._known import LEFT_OUT
 from ._laws import LAWS, Threshold, explained, listed, sentence
-from ._measure import Measured, machine
+from ._measure import Measured
 from ._peer import Peer
 from ._question import Counts
 
@@ -135,7 +136,8 @@ def page(measured: Sequence[Measured], missing: Mapping[str, str]) -> str:
     others = [one for one in measured if one.peer.registry != "here"]
     packages = {one.peer.package for one in others}
     ours = [one for one in measured if one.peer.registry == "here"]
-    here = machine()
+    # That of most, so that what is kept gives the same page anywhere.
+    here = Counter(one.machine for one in measured).most_common(1)[0][0]
     lines = [
         "# Other programs' answers to hard rays",
         "",
@@ -206,6 +208,8 @@ def page(measured: Sequence[Measured], missing: Mapping[str, str]) -> str:
         "reference/peers/install.sh ENV                             # an environment, the packages of npm, the program for crates",
         "RAYPENCIL_PEERS_NODE=ENV/node ENV/bin/raypencil-peers table -o docs/peers.md --elsewhere reference/peers/card",
         "```",
+        "",
+        "With `--kept reference/peers/kept`, where the answers of this page are, those alone are asked whose file was removed.",
     ]
     return "\n".join(lines) + "\n"
 

@@ -128,6 +128,10 @@ found = []; tree.all_intersections(Ray_3(Point_3(*o), Vector_3(*d)), found)
 ends = [(h.first.get_Point_3() if h.first.is_Point_3() else h.first.get_Segment_3().source(), h.second) for h in found]
 ts = [(float(np.dot([p.x() - o[0], p.y() - o[1], p.z() - o[2]], d) / np.dot(d, d)), int(k)) for p, k in ends]
 t, face = min(ts, default=(float("inf"), -1))""",
+    "pyraymesh": """from pyraymesh import Mesh
+mesh = Mesh(np.array(V, np.float32), np.array(F, np.int32)); mesh.build("medium")
+found = mesh.intersect([o], [d])
+face, t = -1, float(found.distances[0]) if found.tri_ids[0] >= 0 else float("inf")""",
     "ncollpyde": """import ncollpyde
 volume = ncollpyde.Volume(np.array(V, float), np.array(F), validate=False, n_rays=0)
 _, points, _ = volume.intersections([o], [e], threads=False)

@@ -83,6 +83,7 @@ class Three(NodePeer):
     """`Raycaster.intersectObject` on a mesh that is drawn from both sides."""
 
     name, title, package, script = "three", "three.js", "three", "three.mjs"
+    conventions = ("Positions are a `Float32Array`, as for what is drawn; of a `Float64Array` it takes double precision.",)
     arithmetic = rays_type = "f64"
     mesh_type = "f32"
     is_unit = True

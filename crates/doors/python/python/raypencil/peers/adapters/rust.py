@@ -102,7 +102,7 @@ _EPSILON = (
 class Bvh(RustPeer):
     """`Bvh::traverse_iterator`, and `Ray::intersects_triangle` on each face that it finds."""
 
-    name, title, package = "bvh", "bvh", "bvh"
+    name, title, package = "bvh", "bvh (Rust)", "bvh"
     arithmetic = mesh_type = rays_type = "f32"
     is_unit = True
     conventions = (_BOTH_SIDES,)
@@ -112,7 +112,7 @@ class Bvh(RustPeer):
 class BvhDouble(RustPeer):
     """The same in double precision."""
 
-    name, title, package = "bvh-f64", "bvh, double", "bvh"
+    name, title, package = "bvh-f64", "bvh (Rust), double", "bvh"
     arithmetic = mesh_type = rays_type = "f64"
     is_unit = True
     conventions = (_BOTH_SIDES,)
