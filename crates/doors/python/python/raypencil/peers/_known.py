@@ -42,6 +42,7 @@ _CLASSES: tuple[type[Peer], ...] = (
     libigl.LibiglTree,
     libigl.LibiglBruteForce,
     vtk.VtkObbTree,
+    vtk.VtkObbTreeAll,
     vtk.VtkCellLocator,
     vtk.VtkStaticCellLocator,
     vtk.VtkTolerance,
@@ -91,7 +92,7 @@ LEFT_OUT = {
     "pyembree": "it wants NumPy 1, and the other packages want NumPy 2",
     "PyMeshLab": "it has no call for rays",
     "pyoctree": "its package does not build",
-    "PyVista": "`ray_trace` is VTK's OBB tree, and `multi_ray_trace` trimesh with Embree: both are asked",
+    "PyVista": "`ray_trace` is VTK's OBB tree (the row *as PyVista asks it*), and `multi_ray_trace` trimesh with Embree: both are asked",
     "ray-triangle-intersection (npm)": "it lets rays pass through backs",
 }
 

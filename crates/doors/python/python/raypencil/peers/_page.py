@@ -117,7 +117,7 @@ def paragraph(one: Measured) -> str:
     advice = [*peer.advice, *remedies(peer, one.thresholds)]
     if leaks and not peer.advice:
         advice.append("do not count crossings of closed meshes by it")
-    if advice:
+    if advice := list(dict.fromkeys(advice)):
         said.append(f"What to do: {'; '.join(advice)}.")
     return " ".join(said) + f" `raypencil-peers ask {peer.name}`"
 
@@ -153,7 +153,7 @@ def page(measured: Sequence[Measured], missing: Mapping[str, str]) -> str:
         "",
         "Every program is asked what it can read: mesh and rays are rounded to its types first, and the truth is that of the rounded"
         " question, by `raypencil cast`, which is exact. So what is counted is no fault of the input. Rays with a t_min are left out,"
-        " for hardly any call takes one. A first hit *differs* if it is none of those at the nearest t: *missed*, *invented* (a hit"
+        " for most calls take none. A first hit *differs* if it is none of those at the nearest t: *missed*, *invented* (a hit"
         " where there is none) or of *another face*. It is **wrong** by the rule of `raypencil check`, which excuses an answer that is"
         " right for a ray moved sideways by 16 u S (u: the unit roundoff of the program's own arithmetic; S: the largest coordinate"
         " plus the origin's; [cast.md](guide/cast.md)). *t wrong*: the face is right, and t off by more than rounding. *Convention*:"

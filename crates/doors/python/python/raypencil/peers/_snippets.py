@@ -103,6 +103,17 @@ face, t = int(face[0]), float(t[0])""",
 found = igl.ray_mesh_intersect(np.array(o, float), np.array(d, float), np.array(V, float), np.array(F, np.int64))
 face, t = found[0][:2] if found else (-1, float("inf"))""",
     "vtk-obb": _VTK.format(kind="vtkOBBTree", tolerance="0.0"),
+    "vtk-obb-all": """import vtk
+points, cells, data = vtk.vtkPoints(), vtk.vtkCellArray(), vtk.vtkPolyData()
+points.SetDataTypeToDouble()
+for v in V: points.InsertNextPoint(v)
+for f in F: cells.InsertNextCell(3, f)
+data.SetPoints(points); data.SetPolys(cells)
+tree = vtk.vtkOBBTree(); tree.SetDataSet(data); tree.BuildLocator()
+found, faces = vtk.vtkPoints(), vtk.vtkIdList(); found.SetDataTypeToDouble()
+tree.IntersectWithLine(o, e, found, faces)
+hit = faces.GetNumberOfIds() > 0
+face, t = (faces.GetId(0), float(np.dot(np.subtract(found.GetPoint(0), o), d) / np.dot(d, d))) if hit else (-1, float("inf"))""",
     "vtk-cells": _VTK.format(kind="vtkCellLocator", tolerance="0.0"),
     "vtk-static": _VTK.format(kind="vtkStaticCellLocator", tolerance="0.0"),
     "vtk-tolerance": _VTK.format(kind="vtkStaticCellLocator", tolerance="1e-12 * np.ptp(V, axis=0).max()"),

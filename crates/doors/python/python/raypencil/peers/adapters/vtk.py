@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import ClassVar
 
 import numpy as np
@@ -10,8 +11,14 @@ from ..._mesh import Mesh
 from .._peer import Built, Hits, Peer, Rays, hits, need, segment_length
 
 
+_TOLERANCE = "give a tolerance of about 1e-12 of the mesh's width, as in the row *with tolerance*: then rays through edges are stopped"
+
+
+_LONGER = "give longer segments"
+
+
 class VtkObbTree(Peer):
-    """`vtkOBBTree`; `pyvista.PolyData.ray_trace` asks it."""
+    """`vtkOBBTree`, by the call that all locators have."""
 
     name, title, package = "vtk-obb", "VTK, OBB tree", "vtk"
     arithmetic = mesh_type = rays_type = "f64"
@@ -22,9 +29,9 @@ class VtkObbTree(Peer):
         "`vtkTriangle::IntersectWithLine` (Common/DataModel/vtkTriangle.cxx) rounds the point on the plane, and then asks whether it is"
         " within the tolerance of the triangle: beside an edge it may be in neither face.",
     )
-    advice: ClassVar[tuple[str, ...]] = (
-        "give a tolerance of about 1e-12 of the mesh's width, as in the row *with tolerance*: then rays through edges are stopped",
-    )
+    advice: ClassVar[tuple[str, ...]] = (_TOLERANCE,)
+    # On wide meshes it helps too.
+    remedies: ClassVar[Mapping[tuple[str, str], str]] = {("scale", "above"): _TOLERANCE}
     kind = "vtkOBBTree"
     #: In widths of the mesh.
     tolerance = 0.0
@@ -59,6 +66,33 @@ class VtkObbTree(Peer):
             start, end = rays[k, 0:3].tolist(), ends[k].tolist()
             if locator.IntersectWithLine(start, end, tolerance, at, point, weights, part, cell, any_cell):
                 face[k], t[k] = cell.get(), at.get() * length[k]
+        return hits(face, t, rays)
+
+
+class VtkObbTreeAll(VtkObbTree):
+    """`vtkOBBTree`, by its own call for all points on a line, as `pyvista.PolyData.ray_trace` has it."""
+
+    name, title = "vtk-obb-all", "VTK, OBB tree, as PyVista asks it"
+    conventions = ("It tells points and faces, and no t; t is that of the first point, in double precision here and in single in PyVista.",)
+    causes = (
+        "Its test of triangles (`vtkOBBTreeLineIntersectsTriangle`, Filters/General/vtkOBBTree.cxx) counts a point on an edge to none of the"
+        " faces beside it, and takes unit normal times segment of 1e-06 or less for 0. Its tolerance is 0, and since VTK 9.7 `SetTolerance`"
+        " changes nothing.",
+    )
+    advice = ("ask VTK's static cell locator with a tolerance instead",)
+    remedies: ClassVar[Mapping[tuple[str, str], str]] = {("scale", "below"): _LONGER, ("angle", "below"): _LONGER}
+
+    def shoot(self, built: Built, rays: Rays) -> Hits:
+        vtk, locator, _, vertices, _ = built
+        ends = rays[:, 0:3] + segment_length(vertices, rays)[:, None] * rays[:, 3:6]
+        face, t = np.full(len(rays), -1), np.full(len(rays), np.inf)
+        points, cells = vtk.vtkPoints(), vtk.vtkIdList()
+        points.SetDataTypeToDouble()
+        for k, ray in enumerate(rays):
+            locator.IntersectWithLine(ray[0:3].tolist(), ends[k].tolist(), points, cells)
+            if cells.GetNumberOfIds():
+                axis = int(np.argmax(np.abs(ray[3:6])))
+                face[k], t[k] = cells.GetId(0), (points.GetPoint(0)[axis] - ray[axis]) / ray[3 + axis]
         return hits(face, t, rays)
 
 
