@@ -269,6 +269,8 @@ def test_a_paragraph_says_what_is_lost_and_what_to_do() -> None:
         " scale a small mesh, with its rays, to a width of about 1, and t back; do not count crossings of closed meshes by it."
         " `raypencil-peers ask planted`"
     )
+    single = paragraph(measured(Planted(), edges=Counts(10, missed=1, wrong=1)))
+    assert "a closed mesh 1 is not stopped where it should be." in single
     assert cell(one.families["edges"]) == "**4** of 6, convention 6" and cell("Error") == "refused" and cell(Counts(9)) == "0"
     assert cell(Counts(9, other=2)) == "0 of 2"
     assert "It answers all rays exactly." in paragraph(measured(Referee()))
@@ -285,9 +287,9 @@ def test_the_page_has_a_row_and_a_paragraph_for_each() -> None:
     assert all(f"| {name} |" in text for name in raypencil.testing.hard_rays())
     # The machine is that of most; the others are named.
     elsewhere = replace(several[0], machine="a card, 16 cores")
-    assert "on a machine of one machine;" in text and "On another machine" not in text
+    assert "on a machine of one machine," in text and "On another machine" not in text
     told = page([elsewhere, *several], {})
-    assert "on a machine of one machine;" in told and "On another machine (a card, 16 cores) were asked: Planted." in told
+    assert "on a machine of one machine," in told and "On another machine (a card, 16 cores) were asked: Planted." in told
     for drawn in (laws_svg(several), speed_svg(several)):
         assert ElementTree.fromstring(drawn).tag.endswith("svg") and "Planted<" in drawn
     assert 'fill="#cccccc"' in laws_svg(several)
@@ -337,8 +339,8 @@ def test_the_command(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None
     other.mkdir()
     (other / "tracer.json").write_text(json.dumps({**answers, "machine": "a card, 16 cores"}))
     assert _command.main(["table", "tracer", "--elsewhere", str(other)]) == 0
-    assert "on a machine of a card, 16 cores;" in capsys.readouterr().out
-    assert f"on a machine of {machine()};" in text and "On another machine" not in text
+    assert "on a machine of a card, 16 cores," in capsys.readouterr().out
+    assert f"on a machine of {machine()}," in text and "On another machine" not in text
     assert _command.main(["table", "tracer", "--elsewhere", str(tmp_path / "none")]) == 2 and "none` is no folder" in capsys.readouterr().err
     # Answers to other questions are refused.
     (kept / "tracer.json").write_text('{"jobs": [], "version": "", "machine": "", "answers": []}')

@@ -102,7 +102,8 @@ def paragraph(one: Measured) -> str:
     through = [one.families.get(name) for name in ("edges", "vertices")]
     leaks = sum(counts.wrong for counts in through if isinstance(counts, Counts))
     if leaks:
-        said.append(f"Of 830 rays through edges and vertices of a closed mesh {leaks} {_are(leaks)} not stopped where they should be.")
+        where = "it" if leaks == 1 else "they"
+        said.append(f"Of 830 rays through edges and vertices of a closed mesh {leaks} {_are(leaks)} not stopped where {where} should be.")
     if one.thresholds:
         said.append(sentence(one.thresholds))
     if peer.causes:
@@ -162,10 +163,10 @@ def page(measured: Sequence[Measured], missing: Mapping[str, str]) -> str:
         "",
         *_table(measured),
         "",
-        f"Rays a second: on 8192 faces, in the same run, on a machine of {here}; threads as each program takes them by itself,"
+        f"Rays a second: on 8192 faces, on a machine of {here}, not all in the same hour; threads as each program takes them by itself,"
         " and through Python or Node where that is how it is called; crates are asked from Rust, in one thread. It says what a call costs,"
         " not what an engine can do. The best of"
-        " five runs; read the power of ten, for other work on the machine makes some rows slower." + _elsewhere(measured, here),
+        " five runs or more; read the power of ten, for other work on the machine makes some rows slower." + _elsewhere(measured, here),
         "",
         f"![Wrong rays against rays a second]({SPEED_FIGURE})",
         "",
