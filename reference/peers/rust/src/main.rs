@@ -41,11 +41,10 @@ struct Answers {
 
 impl Question {
     fn read(folder: &Path) -> Result<Self> {
-        let bytes = |name: &str| fs::read(folder.join(name)).map_err(in_words(name));
         let question = Self {
-            vertices: rows(&bytes("vertices")?, f64::from_le_bytes),
-            faces: rows(&bytes("faces")?, u32::from_le_bytes),
-            rays: rows(&bytes("rays")?, f64::from_le_bytes),
+            vertices: rows(folder, "vertices", f64::from_le_bytes)?,
+            faces: rows(folder, "faces", u32::from_le_bytes)?,
+            rays: rows(folder, "rays", f64::from_le_bytes)?,
         };
         match question.faces.iter().flatten().find(|&&index| index as usize >= question.vertices.len()) {
             Some(index) => {
@@ -74,14 +73,22 @@ impl Question {
     }
 }
 
-/// Rows of WIDE numbers of SIZE bytes each. Bytes that fill no row are left out.
+/// A file's rows of WIDE numbers of SIZE bytes each.
 fn rows<const SIZE: usize, const WIDE: usize, T>(
-    bytes: &[u8],
+    folder: &Path,
+    name: &str,
     number: impl Fn([u8; SIZE]) -> T,
-) -> Vec<[T; WIDE]> {
-    let (numbers, _) = bytes.as_chunks::<SIZE>();
-    let (rows, _) = numbers.as_chunks::<WIDE>();
-    rows.iter().map(|row| row.map(&number)).collect()
+) -> Result<Vec<[T; WIDE]>> {
+    let bytes = fs::read(folder.join(name)).map_err(in_words(name))?;
+    let (numbers, rest) = bytes.as_chunks::<SIZE>();
+    let (rows, more) = numbers.as_chunks::<WIDE>();
+    if !rest.is_empty() || !more.is_empty() {
+        return Err(format!(
+            "{name}: {} bytes; expected rows of {WIDE} numbers of {SIZE} bytes",
+            bytes.len()
+        ));
+    }
+    Ok(rows.iter().map(|row| row.map(&number)).collect())
 }
 
 /// parry's mesh by its own tree and its own test, in one precision.

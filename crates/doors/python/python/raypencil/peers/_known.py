@@ -93,7 +93,7 @@ LEFT_OUT = {
     "PyMeshLab": "it has no call for rays",
     "pyoctree": "its package does not build",
     "PyVista": "`ray_trace` is VTK's OBB tree (the row *as PyVista asks it*), and `multi_ray_trace` trimesh with Embree: both are asked",
-    "ray-triangle-intersection (npm)": "it lets rays pass through backs",
+    "ray-triangle-intersection (npm)": "it is a test of triangles alone, and lets rays pass through backs",
 }
 
 

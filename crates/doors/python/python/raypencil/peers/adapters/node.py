@@ -145,7 +145,7 @@ class Jolt(NodePeer):
         " (`TriangleCodecIndexed8BitPackSOA4Flags.h`).",
     )
     causes = (
-        "It drops faces with a cross product of edges at most 1e-06 long (`IndexedTriangle::IsDegenerate`,"
+        "It drops faces with a cross product of edges at most 1e-06 long (`IndexedTriangleNoMaterial::IsDegenerate`,"
         " Jolt/Geometry/IndexedTriangle.h), and refuses a mesh that has no others.",
     )
     advice = ("scale a mesh with small faces, with its rays, and t back", "do not count crossings of closed meshes by it")
