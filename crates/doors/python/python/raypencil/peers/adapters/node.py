@@ -129,6 +129,10 @@ class CannonEs(NodePeer):
 
     name, title, package, script = "cannon-es", "cannon-es", "cannon-es", "cannon_es.mjs"
     conventions = ("`hitFaceIndex` is that of the last face that was met, not of the nearest; so t alone is judged.",)
+    causes = (
+        "`Ray.pointInTriangle` (dist/cannon-es.js) asks of the rounded point on the plane whether it is inside, without a tolerance: beside an"
+        " edge it may be in neither face.",
+    )
     # It keeps the faces' normals in single precision.
     arithmetic = mesh_type = "f32"
     rays_type = "f64"
