@@ -54,6 +54,7 @@ impl SweepCore {
             // Names that are none are told before the work.
             contenders(&renderers, &[])?;
             let mut sweep = Sweep::new(&scene, axes, task, renderers, as_printed)?;
+            sweep.check_values()?;
             sweep.build = raypencil_cli::build();
             Ok(sweep)
         });

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 import os
 import pickle
 import signal
@@ -105,9 +106,19 @@ def test_a_sweep_of_a_scene_object_and_of_listed_runs(tmp_path: Path) -> None:
 
     again = raypencil.sweep(scene, runs=pandas.DataFrame(runs), do="drive", output=tmp_path)
     assert again.columns["frames"] == [5, 3]
-    # A run that is refused says why, and the others are there.
-    some = raypencil.sweep(scene, {"beam.power_w": [1, -1]}, do="render", output=tmp_path / "b")
-    assert not some and some.columns["refused"][0] is None and "beam.power_w" in some.columns["refused"][1]
+    # A run that its ground refuses says why, and the others are there.
+    some = raypencil.sweep(scene, {"vehicle.position_m": [[0, 0], [1e5, 0]]}, do="render", output=tmp_path / "b")
+    assert not some and some.columns["refused"][0] is None and "no ground" in some.columns["refused"][1]
+
+
+@pytest.mark.parametrize(
+    "settings", [{"beam.power_w": [1, -1]}, {"nokey": [1]}, {"beam.0.pitch_down_deg": ["20:35:5"]}, {"beam.power_w": [math.nan]}]
+)
+def test_a_sweep_of_values_that_no_scene_takes_is_refused_before_its_work(settings: dict[str, Any], tmp_path: Path) -> None:
+    key = next(iter(settings)).rsplit(".", 1)[-1]
+    with pytest.raises(raypencil.RaypencilError, match=key):
+        raypencil.sweep("pyramids", settings, do="render", output=tmp_path / "out")
+    assert not (tmp_path / "out").exists()
 
 
 def test_sweeps_that_make_no_sense(tmp_path: Path) -> None:

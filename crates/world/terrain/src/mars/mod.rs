@@ -35,6 +35,9 @@ pub use fractal::Roughness;
 pub use presets::PRESET_NAMES;
 pub use rocks::Rocks;
 
+/// How much longer than asked a side may become, by whole post spacings.
+const MAX_LONGER: f64 = 1.05;
+
 /// Maximum expected number of faces: the limit of the files, 2^25.
 const MAX_FACES: f64 = (1 << 25) as f64;
 
@@ -268,13 +271,25 @@ impl MarsGround {
     /// Refuses a ground with more faces than a file may have.
     fn check_size(&self) -> Result<(), SceneError> {
         let (extent, cells) = match &self.coarse {
-            // The real side: whole cells, two at least, so that it may be far longer than was asked for.
+            // The real side: whole cells, two at least.
             None => (self.extents(), f64::from(self.cells()) * f64::from(self.cells())),
             Some(coarse) => {
                 let finer = libm::exp2(f64::from(octaves(coarse.spacing.max_element(), self.post_spacing)));
                 (coarse.extent(), f64::from(coarse.columns - 1) * f64::from(coarse.rows - 1) * finer * finer)
             }
         };
+        let asked = self.extent;
+        // A whole number of spacings but for rounding, which may add one more.
+        let spacings = asked / self.post_spacing;
+        let is_whole = (spacings - spacings.round()).abs() < 1e-9 * spacings && spacings > 1.5;
+        if self.coarse.is_none() && !is_whole && extent.max_element() > MAX_LONGER * asked {
+            let expected = format!(
+                "two post spacings of {} m or more, and nearly a whole number of them: {} m",
+                self.post_spacing,
+                extent.max_element()
+            );
+            return Err(SceneError::new("extent_m", asked, expected));
+        }
         let most = format!("at most {MAX_FACES} faces in all");
         // Asked so that what is no number is refused, too.
         let is_too_many = |faces: f64| !(faces <= MAX_FACES);

@@ -388,9 +388,9 @@ fn a_finer_coarse_model_has_a_limit_of_faces() {
 
 #[test]
 fn sizes_are_those_of_the_real_side_and_are_asked_before_the_work() {
-    // A cell of 360 m on 4 m: two cells, so 720 m, on which the smallest rocks would have more faces than a file may.
+    // Two cells of 360 m, on which the smallest rocks would have more faces than a file may.
     let long = MarsGround {
-        extent: 4.0,
+        extent: 720.0,
         post_spacing: 360.0,
         rocks: Rocks { coverage: 0.3, smallest: 0.02, largest: 2.0 },
         ..small("viking1", 3)
@@ -398,9 +398,12 @@ fn sizes_are_those_of_the_real_side_and_are_asked_before_the_work() {
     assert_eq!(long.extents(), DVec2::splat(720.0));
     let error = long.validate().unwrap_err();
     assert_eq!(error.field, "rock_smallest_m", "{error}");
-    // On a side of 4 m they fit.
-    MarsGround { post_spacing: 0.5, ..long.clone() }.validate().unwrap();
+    // On a side of 4 m they fit; but two cells of 360 m are no side of 4 m.
+    MarsGround { extent: 4.0, post_spacing: 0.5, ..long.clone() }.validate().unwrap();
+    let error = MarsGround { extent: 4.0, ..long.clone() }.validate().unwrap_err();
+    assert_eq!(error.field, "extent_m", "{error}");
     // The largest spacing of all, and craters.
+    let long = MarsGround { extent: 2e4, ..long };
     let error = MarsGround { post_spacing: 1e4, ..long.clone() }.validate().unwrap_err();
     assert_eq!(error.field, "rock_smallest_m", "{error}");
     let rocks = Rocks { coverage: 0.0, ..long.rocks };
@@ -430,12 +433,26 @@ fn a_coverage_by_rocks_that_has_no_law_is_refused() {
 }
 
 #[test]
+fn a_side_may_grow_a_little_to_whole_spacings() {
+    // 100.1 spacings make 101; 3 (4.1 / 3) are 4.1 m whatever the rounding of the quotient.
+    for (extent, post_spacing) in [(10.01, 0.1), (4.1, 4.1 / 3.0), (4.1, 4.1 / 7.0), (2.0, 1.0)] {
+        let ground = MarsGround { extent, post_spacing, fine_radius: 0.0, ..small("smooth", 1) };
+        ground.validate().expect("a ground");
+    }
+}
+
+#[test]
 fn numbers_out_of_range_are_refused_by_name() {
     let base = || small("worst", 1);
     let refused = |mars: MarsGround| mars.build().unwrap_err().to_string();
     let cases = [
         (refused(MarsGround { extent: f64::NAN, ..base() }), "extent_m"),
         (refused(MarsGround { extent: 1e5, post_spacing: 0.01, ..base() }), "post_spacing_m"),
+        // Whole spacings would make it 12, 60 and 200 m long; and one spacing is no ground.
+        (refused(MarsGround { extent: 10.0, post_spacing: 4.0, ..base() }), "extent_m"),
+        (refused(MarsGround { extent: 40.0, post_spacing: 30.0, ..base() }), "extent_m"),
+        (refused(MarsGround { extent: 40.0, post_spacing: 100.0, ..base() }), "extent_m"),
+        (refused(MarsGround { extent: 40.0, post_spacing: 40.0, ..base() }), "extent_m"),
         (
             refused(MarsGround {
                 rocks: Rocks { smallest: 1e-3, coverage: 0.4, largest: 1.0 },
