@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use raypencil_rover::{Detection, DrivePlan, Rig};
-use raypencil_scene::{FluxModel, Image, Mesh, SceneError};
+use raypencil_scene::{Camera, FluxModel, Image, Mesh, SceneError};
 use raypencil_scene_io::{DriveSetup, LoadedScene, SceneSource, WaypointFrame};
-use raypencil_sensor::{FixedPattern, ImageSensor, Optics, Sunlight};
+use raypencil_sensor::{FixedPattern, ImageSensor, Optics, Speckle, Sunlight};
 use raypencil_survey::Warning;
 
 use crate::beam_columns::with_columns;
@@ -110,6 +110,15 @@ fn in_keys(error: SceneError) -> SceneError {
     SceneError { field, ..error }
 }
 
+fn speckle_note(speckle: &Speckle, camera: &Camera) -> String {
+    format!(
+        "speckle: contrast {} at a point and {:.3} on a pixel, grain {:.3} um",
+        speckle.contrast,
+        speckle.contrast_in(camera.pixel_pitch),
+        1e6 * speckle.grain
+    )
+}
+
 impl DriveJob {
     /// Job of the drive that a scene file describes, or of the route of a built-in ground. A built-in route starts at
     /// `at` (global x and y, metres) if it is given. `arguments` are the words for [`DriveJob::arguments`].
@@ -159,6 +168,7 @@ impl DriveJob {
         warnings.extend(of_columns);
         warnings.extend(drive.threshold_ignores.map(blind_threshold));
         warnings.extend(beams_out_of_order(&plan));
+        notes.extend(drive.optics.speckle.map(|speckle| speckle_note(&speckle, &plan.rig.camera.sensor)));
         plan.validate("drive").map_err(in_keys)?;
         // A scene's vehicle may lean, for its own maps; that of a drive stands on its wheels.
         if loaded.has_vehicle && loaded.vehicle.rotate(DVec3::Z).z < 1.0 - 1e-12 {

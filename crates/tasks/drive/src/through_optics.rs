@@ -3,8 +3,8 @@
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-use raypencil_scene::{Image, Precision, Quantities, RenderOutput, Renderer, Request, Scene};
-use raypencil_sensor::{Optics, PointSource};
+use raypencil_scene::{Image, Pose, Precision, Quantities, RenderOutput, Renderer, Request, Scene, philox};
+use raypencil_sensor::{Optics, PointSource, SpecklePattern};
 
 use crate::job::DriveJob;
 use crate::sun::Sun;
@@ -67,8 +67,8 @@ impl<'a> ThroughOptics<'a> {
 
     /// Whether the optics change nothing: all light of a point lands in its own pixel, as renderers compute it.
     fn is_perfect(&self) -> bool {
-        let Optics { focus, blurs, dust, .. } = self.optics;
-        focus.is_none() && blurs.is_empty() && dust.is_none()
+        let Optics { focus, blurs, dust, speckle, oversampling: _ } = self.optics;
+        focus.is_none() && blurs.is_empty() && dust.is_none() && speckle.is_none()
     }
 
     /// Replaces the flux of each beam by the image that the optics form of its lit points. Without points or returns of
@@ -76,16 +76,40 @@ impl<'a> ThroughOptics<'a> {
     fn form_images(&self, scene: &Scene, output: &mut RenderOutput) {
         let camera = scene.camera();
         let camera_from_scene = camera.scene_from_sensor.inverse();
-        let formed = output.beams.iter().zip(&output.returns).map(|(map, returns)| {
+        let beams = scene.beams().iter().map(|beam| beam.scene_from_sensor);
+        let formed = output.beams.iter().zip(&output.returns).zip(beams).map(|((map, returns), beam)| {
             let (points, flux) = (map.point.as_ref()?, returns.flux.as_ref()?);
             let lit = points.cells().iter().zip(flux.cells()).filter(|(_, watts)| **watts > 0.0);
             let sources = lit.filter_map(|(point, &watts)| {
                 Some(PointSource::project(&camera.sensor, camera_from_scene * point.get()?, watts))
             });
-            Some(self.optics.form_image(&camera.sensor, sources).optical)
+            let number = pattern_number([camera.scene_from_sensor, beam]);
+            let pattern = SpecklePattern { seed: self.job.sensor.seed, number };
+            Some(self.optics.form_speckled(&camera.sensor, sources, pattern).optical)
         });
         output.flux = formed.collect::<Option<_>>().unwrap_or_default();
     }
+}
+
+/// Number of the pattern of speckle that camera and beam see from these poses: a digest of the poses, rounded to a millimetre and
+/// to 1/4096 of the components of their rotations.
+///
+/// The pattern is that of the ground between them. From the same place it is the same, and it is another one when the stripe lies
+/// elsewhere on the ground. CHOICE: a millimetre, about the size on the ground of the default camera's speckle at 4 m (lambda N / m is
+/// 1.6 mm). Both sides of a comparison have the same pattern.
+fn pattern_number(poses: [Pose; 2]) -> u64 {
+    let words = poses.iter().flat_map(|pose| {
+        let millimetres = pose.position.to_array().map(|metres| 1e3 * metres);
+        let turned = pose.rotation.normalize().to_array().map(|component| 4096.0 * component);
+        let rounded = millimetres.into_iter().chain(turned).map(|number| number.round() as i64);
+        rounded.flat_map(|number| [number as u32, (number >> 32) as u32])
+    });
+    let words: Vec<u32> = words.collect();
+    let digest = words.chunks(4).fold([0; 4], |mut state: [u32; 4], chunk| {
+        state.iter_mut().zip(chunk).for_each(|(state, word)| *state ^= word);
+        philox(state, [0; 2])
+    });
+    u64::from(digest[1]) << 32 | u64::from(digest[0])
 }
 
 impl Renderer for ThroughOptics<'_> {
@@ -179,3 +203,7 @@ mod tests {
         assert_ne!(edges("[drive.optics]\nblurs = [{ kernel = \"down.npy\" }]").1, other);
     }
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/speckle.rs"]
+mod speckle_tests;

@@ -4,6 +4,7 @@
 //!
 //! ```text
 //! 6  splat (disc) -> psf -> kernel (airy) -> convolve -> optics, dust   filter the image for aberrations and dust
+//!    speckle                                                            the grain of laser light
 //!    sunlight                                                           the background light of sun and sky
 //! 7  noise_stream, poisson -> image_sensor (photon)                     add the sensor's noise
 //! 8  image_sensor                                                       adjust the range, digitise, subtract frames
@@ -44,6 +45,7 @@ mod poisson;
 mod presets;
 mod psf;
 mod same_size;
+mod speckle;
 mod splat;
 mod sunlight;
 
@@ -59,6 +61,7 @@ pub use photon::{PLANCK_CONSTANT, SPEED_OF_LIGHT, photon_energy};
 pub use poisson::poisson;
 pub use presets::{PRESET_NAMES, preset};
 pub use psf::{ImageLength, Psf};
+pub use speckle::{Speckle, SpecklePattern};
 pub use splat::{PointSource, SplatImage, ThinLens, splat, splat_defocused};
 pub use sunlight::{MARS_SEMI_MAJOR_AXIS_AU, SOLAR_IRRADIANCE_810_NM, Sunlight, VisibleSurface};
 

@@ -15,6 +15,8 @@ pub enum NoiseSource {
     Prnu = 3,
     /// DSNU: the offset of a pixel's dark signal, the same in every frame.
     Dsnu = 4,
+    /// Speckle: the amplitude of laser light on the image.
+    Speckle = 5,
 }
 
 /// Random numbers of one pixel, one noise source, one frame: Philox of these counters.
@@ -33,6 +35,17 @@ impl NoiseStream {
         Self {
             key: [seed as u32, (seed >> 32) as u32],
             counter: [pixel, frame as u32, (frame >> 32) as u32, (source as u32) << 24],
+            spare: None,
+        }
+    }
+
+    /// First block of a column and a row, in place of a pixel. Columns and rows before the first are counted modulo 2^32;
+    /// the lowest 56 bits of `number` count.
+    pub(crate) fn at_place(seed: u64, source: NoiseSource, number: u64, [column, row]: [u32; 2]) -> Self {
+        let high = (number >> 32) as u32 & 0x00ff_ffff;
+        Self {
+            key: [seed as u32, (seed >> 32) as u32],
+            counter: [column, row, number as u32, (source as u32) << 24 | high],
             spare: None,
         }
     }

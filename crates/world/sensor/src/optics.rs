@@ -2,7 +2,10 @@
 
 use raypencil_scene::{Camera, Image, SceneError, check_range};
 
-use crate::{Dust, PointSource, Psf, SplatImage, ThinLens, binned, convolve, splat, splat_defocused};
+use crate::{
+    Dust, PointSource, Psf, Speckle, SpecklePattern, SplatImage, ThinLens, binned, convolve, splat,
+    splat_defocused,
+};
 
 /// Optics of a camera: focus, blurs and dust.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,12 +18,14 @@ pub struct Optics {
     pub blurs: Vec<Psf>,
     /// Dust on the lens.
     pub dust: Option<Dust>,
+    /// Speckle of the laser's light; `None`: light without interference.
+    pub speckle: Option<Speckle>,
 }
 
 /// Image after each stage of the optics.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OpticsOutput {
-    /// Image after the blurs, watts per cell.
+    /// Image after the blurs and the speckle, watts per cell.
     pub fine: Image<f64>,
     /// The same image, watts per pixel.
     pub pixels: Image<f64>,
@@ -39,6 +44,8 @@ pub struct FluxBudget {
     pub missed: f64,
     /// Flux that blurs moved over the sides of the image.
     pub blurred_out: f64,
+    /// Flux that the speckle took away; negative if it brought some. Its expectation is 0.
+    pub speckled: f64,
     /// Flux absorbed by dust.
     pub absorbed: f64,
     /// Flux that dust scattered beside the image.
@@ -49,9 +56,10 @@ pub struct FluxBudget {
 
 impl Optics {
     /// Sharp and clean optics: every point lands in its pixel.
-    pub const PERFECT: Self = Self { oversampling: 1, focus: None, blurs: Vec::new(), dust: None };
+    pub const PERFECT: Self =
+        Self { oversampling: 1, focus: None, blurs: Vec::new(), dust: None, speckle: None };
 
-    /// Forms the image of points of light.
+    /// Forms the image of points of light, with the first pattern of speckle if there is speckle.
     ///
     /// # Panics
     /// If the optics are not valid.
@@ -80,6 +88,19 @@ impl Optics {
         camera: &Camera,
         sources: impl IntoIterator<Item = PointSource>,
     ) -> OpticsOutput {
+        self.form_speckled(camera, sources, SpecklePattern::default())
+    }
+
+    /// The same with a pattern of speckle. Without speckle all patterns give the same image.
+    ///
+    /// # Panics
+    /// If the optics are not valid.
+    pub fn form_speckled(
+        &self,
+        camera: &Camera,
+        sources: impl IntoIterator<Item = PointSource>,
+        pattern: SpecklePattern,
+    ) -> OpticsOutput {
         let mut entered = 0.0;
         let sources = sources.into_iter().inspect(|source| entered += source.watts);
         let SplatImage { image, lost } = match self.focus {
@@ -90,18 +111,18 @@ impl Optics {
                 splat_defocused(camera.width, camera.height, s, pitch, &lens, sources)
             }
         };
-        let mut imaged = self.filter(camera, image);
+        let mut imaged = self.filter(camera, image, pattern);
         imaged.budget.entered = entered;
         imaged.budget.missed = lost;
         imaged
     }
 
     /// Filters a fine image, whose light is already where a sharp lens would bring it. It is `camera.width` times
-    /// `oversampling` cells wide, and high likewise.
+    /// `oversampling` cells wide, and high likewise. `pattern` chooses the speckle.
     ///
     /// # Panics
     /// If the image has another size.
-    pub fn filter(&self, camera: &Camera, fine: Image<f64>) -> OpticsOutput {
+    pub fn filter(&self, camera: &Camera, fine: Image<f64>, pattern: SpecklePattern) -> OpticsOutput {
         let size = (camera.width * self.oversampling, camera.height * self.oversampling);
         assert_eq!((fine.width(), fine.height()), size, "cells of the fine image");
         let cell = camera.pixel_pitch.map(|pitch| pitch / f64::from(self.oversampling));
@@ -111,6 +132,9 @@ impl Optics {
             let blurred = convolve(&fine, &blur.kernel(cell, self.oversampling));
             fine = blurred.image;
             budget.blurred_out += blurred.lost;
+        }
+        if let Some(speckle) = self.speckle {
+            budget.speckled = speckle.apply(&mut fine, cell, pattern);
         }
         let pixels = binned(&fine, self.oversampling);
         let optical = match self.dust {
@@ -144,6 +168,7 @@ impl Optics {
         for (index, blur) in self.blurs.iter().enumerate() {
             blur.validate(&format!("{field}.blurs[{index}]"))?;
         }
-        self.dust.map_or(Ok(()), |dust| dust.validate(&format!("{field}.dust")))
+        self.dust.map_or(Ok(()), |dust| dust.validate(&format!("{field}.dust")))?;
+        self.speckle.map_or(Ok(()), |speckle| speckle.validate(&format!("{field}.speckle")))
     }
 }

@@ -135,6 +135,7 @@ impl Optics {
                 Psf::Gaussian { sigma: ImageLength::Metres(0.5e-6) },
             ],
             dust: None,
+            speckle: None,
         }
     }
 
@@ -149,6 +150,7 @@ impl Optics {
                 Psf::Gaussian { sigma: ImageLength::Pixels(1.0 / 3.0) },
             ],
             dust: Some(Dust { transmission: 0.9, halo_share: 0.03, halo_sigma: ImageLength::Pixels(20.0) }),
+            speckle: None,
         }
     }
 }

@@ -4,7 +4,7 @@ use raypencil_rover::{
 };
 use raypencil_scene::{Beam, Scene};
 use raypencil_scene_io::{Overrides, Setting, load, load_text};
-use raypencil_sensor::{DarkCurrent, Dust, ImageLength, Psf};
+use raypencil_sensor::{DarkCurrent, Dust, ImageLength, Psf, Speckle};
 
 use super::*;
 use crate::common::{FLAT, SHORT, driven, job, scene, scene_text};
@@ -90,7 +90,7 @@ fn every_key_of_the_camera_is_read() {
     let all = format!(
         "{SHORT}\nsensor = \"ccd_1989\"\nsensor_seed = 3\n[drive.optics]\noversampling = 2\nfocus_m = 5\n\
          blurs = [{{ gaussian_um = 2 }}, {{ airy_rings = 3 }}, {{ gaussian_px = 0.5 }}]\n\
-         dust = {{ transmission = 0.8, halo_share = 0.1, halo_px = 7 }}\n[drive.electronics]\nexposure_ms = 3\n\
+         dust = {{ transmission = 0.8, halo_share = 0.1, halo_px = 7 }}\nspeckle_contrast = 0.7\n[drive.electronics]\nexposure_ms = 3\n\
          quantum_efficiency = 0.6\nshot_noise = false\ndark_e_per_s = 9\ndark_at_c = 20\ndark_doubling_k = 5\n\
          temperature_c = -40\nread_noise_e = 4\nprnu = 0.01\ndsnu_e = 2\nfull_well_e = 5e4\ngain_dn_per_e = 0.02\n\
          bias_dn = 8\nbits = 10"
@@ -102,7 +102,16 @@ fn every_key_of_the_camera_is_read() {
         Psf::Gaussian { sigma: ImageLength::Pixels(0.5) },
     ];
     let dust = Dust { transmission: 0.8, halo_share: 0.1, halo_sigma: ImageLength::Pixels(7.0) };
-    assert_eq!(own.optics, Optics { oversampling: 2, focus: Some(5.0), blurs, dust: Some(dust) });
+    let speckle = Speckle::behind(&own.plan.rig.camera.sensor, 810e-9, 0.7);
+    let optics =
+        Optics { oversampling: 2, focus: Some(5.0), blurs, dust: Some(dust), speckle: Some(speckle) };
+    assert_eq!(own.optics, optics);
+    // The grain is 0.4502 of 3.24 um; on a pixel of 72 um, which is 49.4 times as wide, q is sqrt(2 pi) / 49.4 - 2 / 49.4^2.
+    assert!(
+        own.notes
+            .iter()
+            .any(|note| note == "speckle: contrast 0.7 at a point and 0.035 on a pixel, grain 1.459 um")
+    );
     let dark_current = DarkCurrent {
         rate: 9.0,
         reference_temperature: 293.15,

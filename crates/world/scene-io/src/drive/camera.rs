@@ -43,6 +43,7 @@ pub(crate) struct OpticsKeys {
     focus_m: Key<f64>,
     blurs: Key<Vec<Spanned<BlurKeys>>>,
     dust: Key<DustKeys>,
+    speckle_contrast: Key<f64>,
 }
 
 /// One of `blurs`: exactly one of these keys.
@@ -120,6 +121,10 @@ impl Source<'_> {
         }
         if let Some(dust) = &keys.dust {
             drive.optics.dust = Some(self.dust(dust.get_ref())?);
+        }
+        let name = "drive.optics.speckle_contrast";
+        if let Some(contrast) = self.optional(&keys.speckle_contrast, name, SHARE, "of 1")? {
+            drive.optics.speckle = drive.speckle(contrast);
         }
         Ok(kernel_digests)
     }

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use raypencil_rover::{DrivePlan, Extraction, Rig, Route, StripeLocation};
 use raypencil_scene::{Pose, Scene, SceneError};
-use raypencil_sensor::{ImageSensor, Optics, PRESET_NAMES, Psf, Sunlight, preset};
+use raypencil_sensor::{ImageSensor, Optics, PRESET_NAMES, Psf, Speckle, Sunlight, preset};
 
 /// Maximum cells of the fine image on which optics blur: 2 GiB of them.
 const MAX_FINE_CELLS: u64 = 1 << 28;
@@ -156,10 +156,19 @@ impl DriveSetup {
         }
     }
 
-    /// Fits wavelength and diffraction, which a preset has for the default rig, to the rig of this drive.
+    /// Speckle of this contrast behind the rig's camera, of the first beam's light. `None` for a contrast of 0.
+    pub(crate) fn speckle(&self, contrast: f64) -> Option<Speckle> {
+        let camera = &self.plan.rig.camera.sensor;
+        (contrast != 0.0).then(|| Speckle::behind(camera, self.sensor.wavelength, contrast))
+    }
+
+    /// Fits wavelength, speckle and diffraction, which a preset has for the default rig, to the rig of this drive.
     fn fit_to_camera(&mut self) {
         if let Some(beam) = self.plan.rig.beams.first() {
             self.sensor.wavelength = beam.sensor.wavelength;
+        }
+        if let Some(speckle) = self.optics.speckle {
+            self.optics.speckle = self.speckle(speckle.contrast);
         }
         for index in 0..self.optics.blurs.len() {
             if let Psf::Airy { rings, .. } = self.optics.blurs[index] {
@@ -185,6 +194,10 @@ impl DriveSetup {
             let value = format!("{}, an image of {} x {} cells", optics.oversampling, fine[0], fine[1]);
             let expected = format!("an image of at most {MAX_FINE_CELLS} cells");
             return Err(SceneError::new("drive.optics.oversampling", value, expected));
+        }
+        if let Some(speckle) = optics.speckle {
+            let cell = camera.pixel_pitch.map(|pitch| pitch / f64::from(optics.oversampling));
+            speckle.validate_on("drive.optics.speckle", cell)?;
         }
         sensor.validate("drive.electronics")
     }

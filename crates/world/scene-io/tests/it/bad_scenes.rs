@@ -442,6 +442,12 @@ fn a_camera_of_a_drive_names_its_keys() {
         "2",
         "`drive.optics.dust.halo_share` is 2; expected 0 to 1 of 1",
     );
+    bad(
+        "optics",
+        "speckle_contrast = 1.5",
+        "1.5",
+        "`drive.optics.speckle_contrast` is 1.5; expected 0 to 1 of 1",
+    );
     bad("electronics", "bits = 17", "17", "`drive.electronics.bits` is 17; expected 1 to 16");
     bad(
         "electronics",

@@ -9,7 +9,7 @@ use raypencil_rover::{
     Vehicle,
 };
 use raypencil_scene_io::{DriveSetup, LoadedScene, default_threshold, load_text};
-use raypencil_sensor::{ImageLength, ImageSensor, Psf, preset};
+use raypencil_sensor::{ImageLength, ImageSensor, Psf, Speckle, preset};
 
 /// A scene whose vehicle stands at (1, 2) and looks along global y, with these keys of `[drive]`.
 fn scene(camera: &str, drive: &str) -> LoadedScene {
@@ -74,6 +74,26 @@ fn a_focus_lies_beyond_the_focal_length_and_a_fine_image_has_a_limit() {
     for (oversampling, is_refused) in [(16, false), (17, true)] {
         drive.optics.oversampling = oversampling;
         assert_eq!(refused(&drive).as_deref(), is_refused.then_some("drive.optics.oversampling"));
+    }
+}
+
+#[test]
+fn speckle_is_that_of_the_camera_and_of_the_first_beam() {
+    // 8 mm / 1 mm = f/8 at 800 nm: sqrt 2 / pi of 6.4 um.
+    let speckle = |keys: &str| scene("aperture_mm = 1", keys).drive.unwrap();
+    let found = speckle("optics = { speckle_contrast = 0.5 }").optics.speckle.unwrap();
+    assert_eq!(found.contrast, 0.5);
+    near(found.grain, 0.450_158_158_078_553 * 6.4e-6);
+    // Off by default, with every preset and with a contrast of 0.
+    for keys in ["", "sensor = \"cmos\"", "sensor = \"ccd_1989\"", "optics = { speckle_contrast = 0 }"] {
+        assert_eq!(speckle(keys).optics.speckle, None, "{keys}");
+    }
+    // A pixel of 9 um with one cell takes a grain of 9/64 = 0.140625 um to 288 um.
+    let mut drive = speckle("optics = { speckle_contrast = 0.5 }");
+    for (grain, is_refused) in [(0.1406e-6, true), (0.1407e-6, false), (287.9e-6, false), (288.1e-6, true)] {
+        drive.optics.speckle = Some(Speckle { contrast: 0.5, grain });
+        let field = drive.validate_camera().err().map(|error| error.field);
+        assert_eq!(field.as_deref(), is_refused.then_some("drive.optics.speckle.grain"), "{grain}");
     }
 }
 

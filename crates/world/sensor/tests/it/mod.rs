@@ -3,3 +3,4 @@
 mod chain;
 mod noise;
 mod optics;
+mod speckle;

@@ -3,8 +3,8 @@
 use glam::DVec3;
 use raypencil_scene::{Camera, Image, Lens};
 use raypencil_sensor::{
-    Dust, ImageLength, Kernel, NoiseSource, NoiseStream, Optics, PointSource, Psf, ThinLens, airy_pattern,
-    binned, convolve, encircled_energy, splat, splat_defocused,
+    Dust, ImageLength, Kernel, NoiseSource, NoiseStream, Optics, PointSource, Psf, Speckle, ThinLens,
+    airy_pattern, binned, convolve, encircled_energy, splat, splat_defocused,
 };
 
 /// The default camera, small.
@@ -298,13 +298,15 @@ fn the_flux_budget_balances() {
             Psf::Sampled(Kernel::from_weights(3, 1, &[0.0, 1.0, 1.0]).expect("a kernel")),
         ],
         dust: Some(dust),
+        speckle: Some(Speckle::behind(&camera, 810e-9, 1.0)),
     };
     assert!(all.validate("optics").is_ok());
     for optics in [all.clone(), Optics::PERFECT, Optics::dusty(), Optics::diffraction_limited()] {
         let imaged = optics.form_image(&camera, sources());
         let account = imaged.budget;
-        let spent =
-            account.missed + account.blurred_out + account.absorbed + account.scattered_out + account.arrived;
+        let passed = account.absorbed + account.scattered_out + account.arrived;
+        let spent = account.missed + account.blurred_out + account.speckled + passed;
+        assert_eq!(account.speckled != 0.0, optics.speckle.is_some());
         assert!((account.entered - spent).abs() < 1e-12 * account.entered, "{account:?}");
         assert!(account.missed > 0.0 && (sum(&imaged.optical) - account.arrived).abs() < 1e-24);
     }
@@ -333,4 +335,8 @@ fn optics_are_checked() {
     assert_eq!(refused(Optics { blurs, ..Optics::PERFECT }), "optics.blurs[0].sigma.pixels");
     let dust = Some(Dust { transmission: 1.5, halo_share: 0.0, halo_sigma: ImageLength::Pixels(1.0) });
     assert_eq!(refused(Optics { dust, ..Optics::PERFECT }), "optics.dust.transmission");
+    for (contrast, grain, field) in [(1.1, 1e-6, "contrast"), (-0.1, 1e-6, "contrast"), (1.0, 0.0, "grain")] {
+        let speckle = Some(Speckle { contrast, grain });
+        assert_eq!(refused(Optics { speckle, ..Optics::PERFECT }), format!("optics.speckle.{field}"));
+    }
 }
