@@ -35,6 +35,8 @@ impl Request {
     /// Only the flux of each beam on the camera's image: no maps.
     pub const FLUX: Self =
         Self { camera: false, beams: false, quantities: Quantities::NONE, ..Self::EVERYTHING };
+    /// Nothing at all.
+    pub const NOTHING: Self = Self { returns: false, ..Self::FLUX };
 }
 
 /// The quantities of a map to fill. A quantity that is left out costs neither time nor memory.

@@ -9,6 +9,7 @@ use raypencil_scene_io::{DriveSetup, LoadedScene, SceneSource, WaypointFrame};
 use raypencil_sensor::{FixedPattern, ImageSensor, Optics, Speckle, Sunlight};
 use raypencil_survey::Warning;
 
+use crate::background::Background;
 use crate::beam_columns::with_columns;
 use crate::error::{DriveError, MAX_FRAMES};
 use crate::warnings::{beams_out_of_order, blind_threshold};
@@ -231,7 +232,7 @@ impl DriveJob {
     pub(crate) fn expose(
         &self,
         flux: &Image<f64>,
-        background: Option<&Image<f64>>,
+        background: Option<&Background>,
         number: u64,
         pattern: &mut Option<FixedPattern>,
     ) -> Image<i32> {
@@ -239,10 +240,11 @@ impl DriveJob {
         if !pattern.as_ref().is_some_and(|pattern| pattern.is_of(&self.sensor, size)) {
             *pattern = Some(self.sensor.fixed_pattern(size.0, size.1));
         }
+        let (lit, unlit) = (background.map(|light| &light.lit), background.map(Background::unlit));
         if self.subtract_unlit {
-            return self.sensor.lit_minus_unlit(pattern.as_ref(), flux, background, number);
+            return self.sensor.lit_minus_unlit(pattern.as_ref(), flux, [lit, unlit], number);
         }
-        self.sensor.numbers_with(pattern.as_ref(), flux, background, number)
+        self.sensor.numbers_with(pattern.as_ref(), flux, lit, number)
     }
 
     /// Number of frames of the route.

@@ -48,6 +48,7 @@
 
 mod animation;
 mod animation_frame;
+mod background;
 mod beam_columns;
 mod camera_view;
 mod counts;

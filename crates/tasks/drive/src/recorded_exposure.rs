@@ -5,6 +5,7 @@ use raypencil_rover::Exposure;
 use raypencil_scene::{Image, Scene};
 use sha2::{Digest, Sha256};
 
+use crate::background::Background;
 use crate::job::DriveJob;
 use crate::sun::Sun;
 
@@ -16,8 +17,8 @@ pub(crate) const MAX_LIT_PIXELS: usize = 1 << 23;
 pub(crate) struct RecordedExposure {
     /// Index of the exposure in the drive, which selects the camera's noise.
     number: u64,
-    /// Scene of the exposure, if the sun shone on it.
-    scene: Option<Scene>,
+    /// Scenes of the exposure, if the sun shone on it, and how many of them are of the image with the laser on.
+    scenes: (Vec<Scene>, usize),
     pub(crate) exposure: Exposure,
     /// Columns and rows of the image.
     pub(crate) size: (u32, u32),
@@ -33,7 +34,7 @@ impl RecordedExposure {
     pub(crate) fn new(
         exposure: Exposure,
         number: u64,
-        scene: Option<Scene>,
+        scenes: (Vec<Scene>, usize),
         flux: &Image<f64>,
         numbers: &Image<i32>,
         room: usize,
@@ -49,7 +50,7 @@ impl RecordedExposure {
         let fits = lit().nth(room).is_none();
         Self {
             number,
-            scene,
+            scenes,
             exposure,
             size: (flux.width(), flux.height()),
             lit: fits.then(|| lit().map(|(index, &watts)| (index as u32, watts)).collect()),
@@ -68,7 +69,11 @@ impl RecordedExposure {
         for &(index, watts) in lit {
             flux.cells_mut()[index as usize] = watts;
         }
-        let background = self.scene.as_ref().zip(sun).map(|(scene, sun)| sun.background(job, scene));
+        let (scenes, of_lit) = &self.scenes;
+        let background = sun.and_then(|sun| {
+            let images: Vec<_> = scenes.iter().map(|scene| sun.background(job, scene)).collect();
+            Background::new(&images.iter().collect::<Vec<_>>(), *of_lit)
+        });
         job.expose(&flux, background.as_ref(), self.number, &mut None)
     }
 }

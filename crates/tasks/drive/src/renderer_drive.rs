@@ -5,10 +5,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use raypencil_rover::{CameraImage, Drive, DriveFrame, DrivePlan, ElevationMap, Exposure, StripeExtractor};
-use raypencil_scene::{Image, Pose, Renderer, SceneError, Stage};
+use raypencil_scene::{Image, Pose, Renderer, Scene, SceneError, Stage};
 use raypencil_sensor::FixedPattern;
 use raypencil_terrain::HeightIndex;
 
+use crate::background::Background;
 use crate::exact_map::ExactMap;
 use crate::job::DriveJob;
 use crate::recorded_exposure::{MAX_LIT_PIXELS, RecordedExposure};
@@ -25,6 +26,8 @@ pub(crate) struct RendererDrive<'a> {
     exposures: u64,
     /// Noise that is the same in all of them.
     pattern: Option<FixedPattern>,
+    /// Scenes of the last exposure and their light of sun and sky: beams that are lit at once have the same.
+    sunlit: Vec<(Scene, Image<f64>)>,
     /// What the stripes swept, if the drive is to be held to the truth.
     swept: Option<SweptGround>,
     /// The map that a rover with exact eyes would have of it; likewise.
@@ -62,6 +65,7 @@ impl<'a> RendererDrive<'a> {
             drive: Drive::new(job.plan.clone(), Arc::clone(&job.mesh))?,
             exposures: 0,
             pattern: None,
+            sunlit: Vec::new(),
             swept: None,
             exact: None,
             was_scan: false,
@@ -114,6 +118,7 @@ impl<'a> RendererDrive<'a> {
         let (mut recorded, mut images, mut room) = (Vec::new(), Vec::new(), MAX_LIT_PIXELS);
         let (job, renderer) = (self.job, &self.renderer);
         let (exposures, exposing, pattern) = (&mut self.exposures, &mut self.exposing, &mut self.pattern);
+        let sunlit = &mut self.sunlit;
         let (swept, exact, was_scan) = (&mut self.swept, &mut self.exact, &mut self.was_scan);
         let (heights, clears) =
             (Arc::clone(self.drive.ground()), job.plan.scans.is_some_and(|scans| scans.clear_map));
@@ -137,15 +142,21 @@ impl<'a> RendererDrive<'a> {
                 *was_scan = is_scan;
             }
             // Steps 7 and 8.
-            let background = renderer.background();
-            let light = background.as_ref().map(|(_, flux)| flux);
+            let new = renderer.take_backgrounds();
+            if !new.is_empty() {
+                *sunlit = new;
+            }
+            let times = &job.plan.times;
+            let has_moved = exposure.step.is_none() && !times.is_at_once() && times.has_unlit;
+            let of_lit = if has_moved { sunlit.len() / 2 } else { sunlit.len() };
+            let light = Background::new(&sunlit.iter().map(|(_, image)| image).collect::<Vec<_>>(), of_lit);
             let numbers = match job.is_flux_only() {
                 true => lit_mask(&flux, job.threshold_share),
-                false => job.expose(&flux, light, *exposures, pattern),
+                false => job.expose(&flux, light.as_ref(), *exposures, pattern),
             };
             if record {
-                let scene = background.map(|(scene, _)| scene);
-                let record = RecordedExposure::new(exposure, *exposures, scene, &flux, &numbers, room);
+                let scenes = (sunlit.iter().map(|(scene, _)| scene.clone()).collect(), of_lit);
+                let record = RecordedExposure::new(exposure, *exposures, scenes, &flux, &numbers, room);
                 room -= record.lit_pixels();
                 recorded.push(record);
             }
@@ -208,3 +219,7 @@ fn lit_mask(flux: &Image<f64>, share: f64) -> Image<i32> {
     let is_lit = |&flux: &f64| i32::from(largest > 0.0 && flux >= share * largest);
     Image::from_cells(flux.width(), flux.height(), flux.cells().iter().map(is_lit).collect())
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/motion.rs"]
+mod motion_tests;

@@ -14,8 +14,8 @@ use crate::sun::Sun;
 pub struct ThroughOptics<'a> {
     inner: &'a dyn Renderer,
     optics: &'a Optics,
-    /// Background of the scene that was rendered last, watts per pixel.
-    background: Mutex<Option<(Scene, Image<f64>)>>,
+    /// Scenes that were rendered since the last call of `take_backgrounds`, and their backgrounds, watts per pixel.
+    backgrounds: Mutex<Vec<(Scene, Image<f64>)>>,
     job: &'a DriveJob,
     sun: Option<&'a Sun>,
     times: Mutex<RenderTimes>,
@@ -37,8 +37,8 @@ pub(crate) struct RenderTimes {
 impl<'a> ThroughOptics<'a> {
     /// `inner` behind the optics of `job`, without a sun.
     pub fn new(inner: &'a dyn Renderer, job: &'a DriveJob) -> Self {
-        let (background, times) = (Mutex::default(), Mutex::default());
-        Self { inner, optics: &job.optics, background, job, sun: None, times, lit: None }
+        let (backgrounds, times) = (Mutex::default(), Mutex::default());
+        Self { inner, optics: &job.optics, backgrounds, job, sun: None, times, lit: None }
     }
 
     /// The same, computing also the sun's background of each scene.
@@ -56,9 +56,20 @@ impl<'a> ThroughOptics<'a> {
         self.lit.as_ref()?.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take()
     }
 
-    /// Scene that was rendered last, and its background in watts per pixel. `None` without a sun.
-    pub(crate) fn background(&self) -> Option<(Scene, Image<f64>)> {
-        self.background.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
+    /// Scenes that were rendered since the last call, in their order, and their backgrounds in watts per pixel. None without a
+    /// sun.
+    pub(crate) fn take_backgrounds(&self) -> Vec<(Scene, Image<f64>)> {
+        std::mem::take(&mut self.backgrounds.lock().unwrap_or_else(|poisoned| poisoned.into_inner()))
+    }
+
+    /// Computes the background of a scene, if there is a sun.
+    fn add_background(&self, scene: &Scene) {
+        let Some(sun) = self.sun else { return };
+        let start = Instant::now();
+        let background = sun.background(self.job, scene);
+        let mut all = self.backgrounds.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        all.push((scene.clone(), background));
+        self.times.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).sun += start.elapsed();
     }
 
     pub(crate) fn times(&self) -> RenderTimes {
@@ -122,6 +133,17 @@ impl Renderer for ThroughOptics<'_> {
     }
 
     fn render(&self, scene: &Scene, request: &Request) -> RenderOutput {
+        if *request == Request::NOTHING {
+            // The scene of an image without the laser.
+            self.add_background(scene);
+            return RenderOutput {
+                camera: None,
+                beams: Vec::new(),
+                returns: Vec::new(),
+                flux: Vec::new(),
+                stages: Vec::new(),
+            };
+        }
         let is_perfect = self.is_perfect();
         let wants_points = !is_perfect || self.lit.is_some();
         let quantities = Quantities { point: wants_points || request.quantities.point, ..request.quantities };
@@ -129,19 +151,13 @@ impl Renderer for ThroughOptics<'_> {
         let start = Instant::now();
         let mut output = self.inner.render(scene, &request);
         let rendering = start.elapsed();
-        let (mut optics, mut sun) = (Duration::ZERO, Duration::ZERO);
+        let mut optics = Duration::ZERO;
         if !is_perfect {
             let start = Instant::now();
             self.form_images(scene, &mut output);
             optics = start.elapsed();
         }
-        if let Some(sun_of_job) = self.sun {
-            let start = Instant::now();
-            let background = sun_of_job.background(self.job, scene);
-            let mut last = self.background.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-            *last = Some((scene.clone(), background));
-            sun = start.elapsed();
-        }
+        self.add_background(scene);
         if let Some(lit) = &self.lit {
             // The flux goes on to the camera; the points stay here.
             let points = RenderOutput {
@@ -156,7 +172,6 @@ impl Renderer for ThroughOptics<'_> {
         let mut times = self.times.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         times.rendering += rendering;
         times.optics += optics;
-        times.sun += sun;
         output
     }
 }

@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 use raypencil_chassis::GroundFaces;
-use raypencil_scene::{Image, Mesh, Pose, Renderer, Request, SceneError};
+use raypencil_scene::{Image, Mesh, Pose, Renderer, Request, Scene, SceneError};
 use raypencil_terrain::HeightIndex;
 
 use crate::drive_plan::{DrivePlan, ExposureMode, PointLookup};
@@ -15,7 +15,7 @@ use crate::localisation::{Localisation, LocalisationReading};
 use crate::mapper::{KnownNoise, MapUpdate, StripePoint};
 use crate::navigator_map::{LabelledVector, navigator_map};
 use crate::obstacle_map::{ObstacleMap, obstacle_map_due};
-use crate::rig::Pan;
+use crate::rig::{Pan, Rig};
 use crate::route::{Route, RoutePose};
 use crate::rules::Rule;
 use crate::scan::ScanReason;
@@ -295,25 +295,10 @@ impl Drive {
     ) -> Result<(), SceneError> {
         let plan = &self.plan;
         let rig = scan.map_or_else(|| plan.rig.clone(), |(_, pan)| plan.rig.panned(pan));
-        let mesh = Arc::clone(&self.mesh);
-        let scene = rig.scene(mesh, stance.pose(), plan.atmosphere, plan.flux_model)?;
-        // Steps 1 to 5.
-        let flux = renderer.render(&scene, &Request::FLUX).flux;
-        if flux.len() != rig.beams.len() {
-            let given = format!("{} images of flux", flux.len());
-            let expected = format!("{}, one for each beam", rig.beams.len());
-            return Err(SceneError::new(renderer.name(), given, expected));
-        }
-        // Steps 6 to 9.
         let step = scan.map(|(step, _)| step);
         let first = seen.edges.len();
-        let exposed: Vec<(Option<usize>, Image<f64>)> = match plan.exposures {
-            ExposureMode::InTurn => {
-                flux.into_iter().enumerate().map(|(beam, image)| (Some(beam), image)).collect()
-            }
-            ExposureMode::Together => sum(flux).map(|image| (None, image)).into_iter().collect(),
-        };
-        for (beam, light) in exposed {
+        // Steps 6 to 9.
+        let mut expose = |beam: Option<usize>, light: Image<f64>| -> Result<(), SceneError> {
             let exposure = Exposure { frame, step, beam };
             let stripes = self.extractor.stripes(exposure, &pipeline(exposure, light))?;
             seen.columns_left_out += stripes.columns_left_out;
@@ -322,6 +307,27 @@ impl Drive {
                 beam: of.beam,
                 edge: of.edge,
             }));
+            Ok(())
+        };
+        let lit: Vec<Option<usize>> = match plan.exposures {
+            ExposureMode::InTurn => (0..rig.beams.len()).map(Some).collect(),
+            ExposureMode::Together => vec![None],
+        };
+        // In a scan the vehicle stands.
+        if scan.is_some() || plan.times.is_at_once() {
+            let mut flux = self.flux(renderer, &rig, stance)?;
+            if let ExposureMode::Together = plan.exposures {
+                flux = sum(flux).into_iter().collect();
+            }
+            for (beam, light) in lit.into_iter().zip(flux) {
+                expose(beam, light)?;
+            }
+        } else {
+            for (number, beam) in lit.into_iter().enumerate() {
+                if let Some(light) = self.moving_light(renderer, &rig, frame, number, beam)? {
+                    expose(beam, light)?;
+                }
+            }
         }
         let plane = SheetPlane::for_location(plan.extraction.place);
         let triangulations: Vec<_> = (0..rig.beams.len())
@@ -351,6 +357,71 @@ impl Drive {
             }));
         }
         Ok(())
+    }
+
+    /// Steps 1 to 5: flux of each beam on the camera's image, from a stance of the vehicle.
+    fn flux(
+        &self,
+        renderer: &dyn Renderer,
+        rig: &Rig,
+        stance: &Stance,
+    ) -> Result<Vec<Image<f64>>, SceneError> {
+        let flux = renderer.render(&self.scene(rig, stance)?, &Request::FLUX).flux;
+        if flux.len() != rig.beams.len() {
+            let given = format!("{} images of flux", flux.len());
+            let expected = format!("{}, one for each beam", rig.beams.len());
+            return Err(SceneError::new(renderer.name(), given, expected));
+        }
+        Ok(flux)
+    }
+
+    fn scene(&self, rig: &Rig, stance: &Stance) -> Result<Scene, SceneError> {
+        let plan = &self.plan;
+        rig.scene(Arc::clone(&self.mesh), stance.pose(), plan.atmosphere, plan.flux_model)
+    }
+
+    /// Light of the lit exposure `number` of a frame, of one beam or of all (`None`), while the vehicle drives: the mean over
+    /// the poses of the exposure. `None` without beams.
+    ///
+    /// The renderer gets the scenes of the lit exposure, and then those of the unlit one that follows, if any: of these nothing is
+    /// requested.
+    fn moving_light(
+        &self,
+        renderer: &dyn Renderer,
+        rig: &Rig,
+        frame: u64,
+        number: usize,
+        beam: Option<usize>,
+    ) -> Result<Option<Image<f64>>, SceneError> {
+        let DrivePlan { times, route, .. } = &self.plan;
+        let middle = frame as f64 / route.frame_rate + times.lit(number);
+        let mut images = Vec::new();
+        for moment in times.moments(middle) {
+            let mut flux = self.flux(renderer, rig, &self.stance_at(moment)?)?;
+            images.extend(match beam {
+                Some(beam) => Some(flux.swap_remove(beam)),
+                None => sum(flux),
+            });
+        }
+        if times.has_unlit {
+            for moment in times.moments(middle + times.interval) {
+                renderer.render(&self.scene(rig, &self.stance_at(moment)?)?, &Request::NOTHING);
+            }
+        }
+        let share = 1.0 / f64::from(times.samples);
+        Ok(sum(images).map(|mut light| {
+            light.cells_mut().iter_mut().for_each(|pixel| *pixel *= share);
+            light
+        }))
+    }
+
+    /// How the vehicle stands at a time of the route, seconds.
+    fn stance_at(&self, time: f64) -> Result<Stance, SceneError> {
+        let RoutePose { place, heading, driven } = self.plan.route.at(time);
+        self.true_vehicle.stance(place, heading).ok_or_else(|| {
+            let value = format!("off the ground after {driven:.2} m, at ({:.2}, {:.2}) m", place.x, place.y);
+            SceneError::new("drive.route", value, "ground under every wheel all along it")
+        })
     }
 
     /// Table of a beam's points, if the plan looks points up. That of the rig as it is mounted is kept; a scan position

@@ -3,6 +3,7 @@
 use raypencil_scene::{Atmosphere, FluxModel, SceneError, check_count};
 
 use crate::elevation_map::MapSize;
+use crate::exposure_times::ExposureTimes;
 use crate::localisation::LocalisationErrors;
 use crate::navigator_map::VectorRules;
 use crate::obstacle_map::{FRAMES_PER_OBSTACLE_MAP, RadialGrid};
@@ -53,6 +54,8 @@ pub struct DrivePlan {
     pub extraction: Extraction,
     /// Exposures of the beams: in turn or together.
     pub exposures: ExposureMode,
+    /// Times of the exposures of a frame, and the motion in each.
+    pub times: ExposureTimes,
     /// How edges become points.
     pub lookup: PointLookup,
     /// Errors of the localisation sensors.
@@ -172,6 +175,7 @@ impl DrivePlan {
             route,
             extraction,
             exposures: ExposureMode::InTurn,
+            times: ExposureTimes::default(),
             lookup: PointLookup::Computed,
             errors: LocalisationErrors::default(),
             seed: 0,
@@ -192,6 +196,11 @@ impl DrivePlan {
         self.rig.validate(&name("rig"))?;
         self.route.validate(&name("route"))?;
         self.extraction.validate(&name("extraction"))?;
+        let lit = match self.exposures {
+            ExposureMode::InTurn => self.rig.beams.len(),
+            ExposureMode::Together => 1,
+        };
+        self.times.validate(&name("times"), lit, 1.0 / self.route.frame_rate)?;
         self.errors.validate(&name("errors"))?;
         self.map.validate(&name("map"))?;
         if let Some(scans) = self.scans {

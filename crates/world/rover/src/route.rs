@@ -59,7 +59,29 @@ impl Route {
     /// assert_eq!(route.frame(101), None);
     /// ```
     pub fn frame(&self, index: u64) -> Option<RoutePose> {
-        let mut time = index as f64 / self.frame_rate;
+        let (pose, over) = self.walk(index as f64 / self.frame_rate);
+        // The last frame is the first one at or after the end. 1e-6 of a frame keeps rounding from adding another.
+        let frames_over = over * self.frame_rate;
+        (frames_over < 1.0 - 1e-6).then_some(pose)
+    }
+
+    /// Pose at a time, seconds since frame 0. The vehicle stands at the start before it, and at the last waypoint after it.
+    ///
+    /// ```
+    /// use glam::DVec2;
+    /// use raypencil_rover::Route;
+    ///
+    /// let route = Route::through(DVec2::ZERO, vec![DVec2::new(3.0, 0.0)]);
+    /// assert_eq!(Some(route.at(5.0)), route.frame(50));
+    /// assert!((route.at(0.001).driven - 3e-4).abs() < 1e-15);
+    /// assert_eq!((route.at(-1.0).driven, route.at(99.0).driven), (0.0, 3.0));
+    /// ```
+    pub fn at(&self, time: f64) -> RoutePose {
+        self.walk(time.max(0.0)).0
+    }
+
+    /// Pose at a time of at least 0, and the time since the end of the route; below 0 on the way.
+    fn walk(&self, mut time: f64) -> (RoutePose, f64) {
         let (mut place, mut heading, mut driven) = (self.start, self.heading, 0.0);
         for &waypoint in &self.waypoints {
             let leg = waypoint - place;
@@ -69,7 +91,7 @@ impl Route {
             if time < turning {
                 let turned = time * self.turn_rate;
                 let heading = heading + if turn < 0.0 { -turned } else { turned };
-                return Some(RoutePose { place, heading, driven });
+                return (RoutePose { place, heading, driven }, -1.0);
             }
             time -= turning;
             heading = towards;
@@ -77,15 +99,13 @@ impl Route {
             if time < driving {
                 let along = time * self.speed;
                 let place = place + leg * (along / leg.length());
-                return Some(RoutePose { place, heading, driven: driven + along });
+                return (RoutePose { place, heading, driven: driven + along }, -1.0);
             }
             time -= driving;
             driven += leg.length();
             place = waypoint;
         }
-        // The last frame is the first one at or after the end. 1e-6 of a frame keeps rounding from adding another.
-        let frames_over = time * self.frame_rate;
-        (frames_over < 1.0 - 1e-6).then_some(RoutePose { place, heading, driven })
+        (RoutePose { place, heading, driven }, time)
     }
 
     /// Checks every field. The error names the first one that is out of range.

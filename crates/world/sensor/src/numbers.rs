@@ -113,7 +113,8 @@ impl ImageSensor {
         FixedPattern { sensor: *self, size: (width, height), dark_signals }
     }
 
-    /// [`ImagePair::difference`](crate::ImagePair::difference) of [`ImageSensor::expose_pair`] alone, without the other images.
+    /// [`ImagePair::difference`](crate::ImagePair::difference) of [`ImageSensor::expose_pair`] alone, without the other images. Here both
+    /// frames have a background of their own, the lit one first.
     ///
     /// # Panics
     /// As [`ImageSensor::expose`].
@@ -121,12 +122,12 @@ impl ImageSensor {
         &self,
         pattern: Option<&FixedPattern>,
         optical: &Image<f64>,
-        background: Option<&Image<f64>>,
+        backgrounds: [Option<&Image<f64>>; 2],
         pair: u64,
     ) -> Image<i32> {
         let off = Image::filled(optical.width(), optical.height(), 0.0);
-        let lit = self.numbers_with(pattern, optical, background, 2 * pair);
-        let unlit = self.numbers_with(pattern, &off, background, 2 * pair + 1);
+        let lit = self.numbers_with(pattern, optical, backgrounds[0], 2 * pair);
+        let unlit = self.numbers_with(pattern, &off, backgrounds[1], 2 * pair + 1);
         difference(&lit, &unlit)
     }
 }

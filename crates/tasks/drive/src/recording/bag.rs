@@ -28,7 +28,12 @@ pub(super) struct DriveBag {
 
 /// Time of a frame. CHOICE: a drive begins at 1 s, because the time 0 means "no time" in ROS.
 fn stamp(job: &DriveJob, frame: u64) -> Stamp {
-    let seconds = 1.0 + frame as f64 / job.plan.route.frame_rate;
+    stamp_after(job, frame, 0.0)
+}
+
+/// The same, so many seconds after it.
+fn stamp_after(job: &DriveJob, frame: u64, seconds: f64) -> Stamp {
+    let seconds = 1.0 + frame as f64 / job.plan.route.frame_rate + seconds;
     Stamp::from_nanoseconds((seconds * 1e9).round() as u64)
 }
 
@@ -67,7 +72,13 @@ impl DriveBag {
         taken: &CameraImage,
     ) -> Result<(), FileError> {
         let at = stamp(job, exposure.frame);
-        let header = Header { stamp: at, frame_id: camera_frame(exposure.step) };
+        // In a scan all exposures are at the time of the frame.
+        let after = match exposure.step {
+            None => job.plan.times.lit(exposure.beam.unwrap_or(0)),
+            Some(_) => 0.0,
+        };
+        let taken_at = stamp_after(job, exposure.frame, after);
+        let header = Header { stamp: taken_at, frame_id: camera_frame(exposure.step) };
         let scan = if exposure.step.is_some() { "/scan" } else { "" };
         let lit = exposure.beam.map_or("all".into(), |beam| format!("beam{beam}"));
         let topic = |name: &str| Topic::new(format!("/camera{scan}/{lit}/{name}"));

@@ -11,7 +11,8 @@ use crate::run::{DriveExtras, drive_with};
 
 #[test]
 fn every_frame_has_its_messages_at_its_time() {
-    let route = "waypoints_m = [[0.6, 0]]\nframes_per_s = 3\nscan_steps = 6\nobstacles_every_frames = 3";
+    let route = "waypoints_m = [[0.6, 0]]\nframes_per_s = 3\nscan_steps = 6\nobstacles_every_frames = 3\n\
+        exposure_interval_ms = 50";
     let job = job(FLAT, route);
     let folder = tempfile::tempdir().unwrap();
     let contents = RecordContents { mcap: true, ..RecordContents::default() };
@@ -29,6 +30,12 @@ fn every_frame_has_its_messages_at_its_time() {
         assert!((frame - frame.round()).abs() < 1e-8 && message.log_time >= last, "{}", message.log_time);
         last = message.log_time;
         let topic = message.channel.topic.clone();
+        if topic == "/camera/beam1/image_raw" {
+            // Header: seconds and nanoseconds. The second beam is lit 50 ms after the frame.
+            let word = |at: usize| u32::from_le_bytes(message.data[at..at + 4].try_into().unwrap());
+            let seconds = f64::from(word(4)) + 1e-9 * f64::from(word(8));
+            assert!((seconds - message.log_time as f64 * 1e-9 - 0.05).abs() < 1e-8, "{seconds}");
+        }
         if topic == "/points" {
             // Header: time, then the text "base_link" with its length; then rows and columns.
             let columns = &message.data[4 + 8 + 4 + 12 + 4..][..4];

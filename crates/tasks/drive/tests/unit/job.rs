@@ -194,7 +194,8 @@ fn subtracting_an_unlit_image_removes_the_bias() {
     flux.set(4, 4, 2e-11);
     let background = Image::filled(9, 7, 1e-12);
     let pair = job.sensor.expose_pair(&flux, Some(&background), 5);
-    assert_eq!(job.expose(&flux, Some(&background), 5, &mut None), pair.difference);
+    let light = Background { lit: background.clone(), unlit: None };
+    assert_eq!(job.expose(&flux, Some(&light), 5, &mut None), pair.difference);
 }
 
 #[test]

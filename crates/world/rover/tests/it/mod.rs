@@ -4,5 +4,6 @@
 mod common;
 mod drive;
 mod ground;
+mod motion;
 mod pyramids;
 mod rules;

@@ -6,8 +6,8 @@ use std::ops::RangeInclusive;
 use toml::Spanned;
 
 use raypencil_rover::{
-    Detection, DrivePlan, ExposureMode, PointLookup, PositionFixes, RULE_NAMES, RadialGrid, Rig, Rule,
-    ScanRule, StripeLocation, TraversabilityRules, VectorRules, Vehicle,
+    Detection, DrivePlan, ExposureMode, MAX_BLUR_SAMPLES, PointLookup, PositionFixes, RULE_NAMES, RadialGrid,
+    Rig, Rule, ScanRule, StripeLocation, TraversabilityRules, VectorRules, Vehicle,
 };
 use raypencil_sensor::{MARS_SEMI_MAJOR_AXIS_AU, PRESET_NAMES, SOLAR_IRRADIANCE_810_NM, Sunlight};
 
@@ -43,6 +43,8 @@ pub(crate) struct DriveKeys {
     subtract_unlit: Option<bool>,
     pencils_per_pixel: Key<f64>,
     exposures: Key<String>,
+    exposure_interval_ms: Key<f64>,
+    motion_blur_samples: Key<i64>,
     detection: Key<String>,
     threshold_dn: Key<f64>,
     threshold_share: Key<f64>,
@@ -201,7 +203,12 @@ impl Source<'_> {
         let (pencils, name) = (&keys.pencils_per_pixel, "drive.pencils_per_pixel");
         self.number(pencils, name, &mut drive.pencils_per_pixel, 0.1..=64.0, "pencils")?;
         let modes = [("in_turn", ExposureMode::InTurn), ("together", ExposureMode::Together)];
-        self.choice(&keys.exposures, "drive.exposures", &mut drive.plan.exposures, &modes)
+        self.choice(&keys.exposures, "drive.exposures", &mut drive.plan.exposures, &modes)?;
+        let (times, milli) = (&mut drive.plan.times, |ms| 1e-3 * ms);
+        let (interval, name) = (&keys.exposure_interval_ms, "drive.exposure_interval_ms");
+        self.converted(interval, name, &mut times.interval, 0.0..=1e6, "milliseconds", milli)?;
+        let (samples, name) = (&keys.motion_blur_samples, "drive.motion_blur_samples");
+        self.integer(samples, name, &mut times.samples, 1..=MAX_BLUR_SAMPLES.into(), "")
     }
 
     /// Light on Mars, its sun as bright as the file says.

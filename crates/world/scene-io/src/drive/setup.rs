@@ -143,6 +143,8 @@ impl DriveSetup {
         };
         self.plan.atmosphere = scene.atmosphere();
         self.plan.flux_model = scene.flux_model();
+        self.plan.times.duration = self.sensor.exposure;
+        self.plan.times.has_unlit = self.subtract_unlit;
         self.fit_to_camera();
     }
 

@@ -417,6 +417,20 @@ fn a_drive_names_its_keys() {
 }
 
 #[test]
+fn times_of_exposures_name_their_keys() {
+    let bad = |line: &str, marked: &str, message: &str| {
+        let problem = problem(&format!("version = 1\n[drive]\nwaypoints_m = [[1, 2]]\n{line}\n"));
+        assert_eq!((problem.message.as_str(), problem.marked()), (message, marked), "{line}");
+    };
+    bad(
+        "exposure_interval_ms = -1",
+        "-1",
+        "`drive.exposure_interval_ms` is -1; expected 0 to 1000000 milliseconds",
+    );
+    bad("motion_blur_samples = 65", "65", "`drive.motion_blur_samples` is 65; expected 1 to 64");
+}
+
+#[test]
 fn a_camera_of_a_drive_names_its_keys() {
     let bad = |table: &str, line: &str, marked: &str, message: &str| {
         let text = format!("version = 1\n[drive]\nwaypoints_m = [[1, 2]]\n[drive.{table}]\n{line}\n");

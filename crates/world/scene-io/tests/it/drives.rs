@@ -5,8 +5,8 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, FRAC_PI_6, PI};
 use glam::{DVec2, DVec3};
 
 use raypencil_rover::{
-    Detection, ExposureMode, Extraction, RadialGrid, SlopeLimits, StripeLocation, TraversabilityRules,
-    Vehicle,
+    Detection, ExposureMode, ExposureTimes, Extraction, RadialGrid, SlopeLimits, StripeLocation,
+    TraversabilityRules, Vehicle,
 };
 use raypencil_scene_io::{DriveSetup, LoadedScene, default_threshold, load_text};
 use raypencil_sensor::{ImageLength, ImageSensor, Psf, Speckle, preset};
@@ -183,6 +183,16 @@ fn keys_of_the_route_and_of_the_images_set_their_numbers() {
     let expected =
         Extraction { detection: Detection::Fixed(2.0), place: StripeLocation::SubPixel, least_rows: 2 };
     assert_eq!(drive.plan.extraction, expected);
+}
+
+#[test]
+fn times_of_exposures_follow_from_their_keys_and_from_the_sensor() {
+    let keys = "sensor = \"cmos\"\nsubtract_unlit = true\nexposure_interval_ms = 20\nmotion_blur_samples = 5";
+    let expected = ExposureTimes { interval: 0.02, has_unlit: true, duration: 0.4e-3, samples: 5 };
+    assert_eq!(drive(keys).plan.times, expected);
+    let default = drive("").plan.times;
+    assert!(default.is_at_once());
+    assert_eq!(default, ExposureTimes { duration: 2e-3, ..ExposureTimes::default() });
 }
 
 #[test]

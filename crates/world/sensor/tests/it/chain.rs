@@ -216,7 +216,7 @@ fn numbers_alone_are_those_of_the_whole_chain() {
             let difference = sensor.expose_pair(&light, background, 5).difference;
             let pattern = sensor.fixed_pattern(light.width(), light.height());
             for pattern in [None, Some(&pattern)] {
-                assert_eq!(sensor.lit_minus_unlit(pattern, &light, background, 5), difference);
+                assert_eq!(sensor.lit_minus_unlit(pattern, &light, [background; 2], 5), difference);
             }
         }
     }
