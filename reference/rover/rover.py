@@ -122,6 +122,7 @@ class Rover:
             self.elevation.start(x, y, rotation)
             self.fill_at_start(x, y, rotation, proximity)
         self.map.frame_now, self.map.way_now = k, self.way
+        self.map.drift.scans = [frame for frame in range(k) if s.scan[frame]]
         if k == 0 and mended:
             pass  # nothing is measured yet, and nothing was driven
         elif mended:

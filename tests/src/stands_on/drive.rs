@@ -63,7 +63,8 @@ fn add_plan(digest: &mut Fingerprint, plan: &DrivePlan) {
     let ErrorMargins { obstacle, clear } = margins;
     let RadialGrid { sectors, half_angle, first, step, last } = plan.grid;
     let MapSize { spacing, points } = plan.map;
-    let Sweep { from, to, steps, camera } = plan.sweep;
+    // A scan takes no time by default, which changes nothing that is found.
+    let Sweep { from, to, steps, camera, step_time: _ } = plan.sweep;
     let LocalisationErrors { position_walk, heading_drift, attitude_noise, proximity_noise, .. } =
         plan.errors;
     let MapRules { start, elevation, extrapolate, several, inconsistency, settle } = plan.map_rules;

@@ -59,6 +59,8 @@ pub struct MeasuredPoint {
 pub struct DriveFrame {
     /// Index of the frame.
     pub index: u64,
+    /// Time at which the frame begins, seconds since the first: that on the route and that of all scans before.
+    pub time: f64,
     /// Commanded pose, from the route.
     pub place: RoutePose,
     /// True pose on the ground.
@@ -135,6 +137,8 @@ pub struct Drive {
     mapping: Mapping,
     mapper: Option<Box<dyn LocalMapper>>,
     frame: u64,
+    /// Time of all scans so far, seconds.
+    paused: f64,
     last_scan: Option<f64>,
     inconsistency: Inconsistency,
     /// Tables of the beams as they are mounted, each made when it is first needed.
@@ -172,6 +176,7 @@ impl Drive {
             localisation,
             mapper: None,
             frame: 0,
+            paused: 0.0,
             last_scan: None,
             inconsistency: Inconsistency::default(),
             tables,
@@ -215,6 +220,7 @@ impl Drive {
         let index = self.frame;
         let Some(place) = self.plan.route.frame(index) else { return Ok(None) };
         let Some(stance) = self.true_vehicle.stance(place.place, place.heading) else { return Ok(None) };
+        let time = index as f64 / self.plan.route.frame_rate + self.paused;
         let sensed = self.localisation.read(&stance, &self.true_vehicle.heights);
         let rule = self.plan.scans;
         let scan = rule.and_then(|rule| rule.due(place.driven, self.last_scan, &self.inconsistency));
@@ -265,10 +271,17 @@ impl Drive {
             let vectors = navigator_map(&obstacles, vectors);
             (obstacles, vectors)
         });
+        if scan.is_some() {
+            let duration = self.plan.sweep.duration();
+            self.paused += duration;
+            self.localisation.pause(duration);
+            mapper.pause(duration);
+        }
         self.frame += 1;
         let (points, believed) = (measured.len(), mapper.pose());
         Ok(Some(DriveFrame {
             index,
+            time,
             place,
             stance,
             sensed,

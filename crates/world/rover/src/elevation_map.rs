@@ -165,6 +165,8 @@ pub struct ElevationMap {
     /// Sum of the corrections of the vehicle's elevation so far, metres.
     pub(crate) corrected: f64,
     pub(crate) drift: KnownDrift,
+    /// Pauses: the frame behind which each is, and its time, seconds.
+    pub(crate) pauses: Vec<(u64, f64)>,
 }
 
 impl ElevationMap {
@@ -185,7 +187,20 @@ impl ElevationMap {
         assert!(size.validate("map").is_ok(), "invalid map size: {size:?}");
         let cells = vec![Cell::default(); size.points as usize * size.points as usize];
         let (centre, drift) = (GridPoint { i: 0, j: 0 }, KnownDrift::default());
-        Self { size, origin, centre, cells, update: 0, rules, odometer: 0.0, frame: 0, corrected: 0.0, drift }
+        let pauses = Vec::new();
+        Self {
+            size,
+            origin,
+            centre,
+            cells,
+            update: 0,
+            rules,
+            odometer: 0.0,
+            frame: 0,
+            corrected: 0.0,
+            drift,
+            pauses,
+        }
     }
 
     /// Size of the map.
@@ -305,7 +320,7 @@ impl ElevationMap {
         if old == new {
             return (0, 0);
         }
-        let was_on = Self { centre: old, cells: Vec::new(), ..*self };
+        let was_on = Self { centre: old, cells: Vec::new(), pauses: Vec::new(), ..*self };
         self.centre = new;
         for point in self.points() {
             if !was_on.contains(point) {

@@ -31,10 +31,20 @@ impl KnownDrift {
 
     /// Variance of the displacement in plan, in any one direction, of ground that was measured in frame `then` against the
     /// vehicle in frame `now`, square metres. Since then it has driven `way` metres, and the ground is now `away` metres from it.
-    pub(crate) fn displacement_variance(&self, then: u64, now: u64, way: f64, away: f64) -> f64 {
+    /// `paused`: time of all pauses before a frame, seconds.
+    pub(crate) fn displacement_variance(
+        &self,
+        then: u64,
+        now: u64,
+        way: f64,
+        away: f64,
+        paused: impl Fn(u64) -> f64,
+    ) -> f64 {
         let square = |x: f64| x * x;
-        let seconds = |frames: u64| frames as f64 * self.frame_time;
-        let since = seconds(now.saturating_sub(then));
+        let seconds = |from: u64, to: u64| {
+            to.saturating_sub(from) as f64 * self.frame_time + (paused(to) - paused(from))
+        };
+        let since = seconds(then, now);
         let drifted = |time: f64| square(self.position * time) + square(self.walk) * time;
         let by_position = match self.fixes {
             // Both positions have the error of their own fix, and what was added since.
@@ -42,14 +52,14 @@ impl KnownDrift {
                 if last_fix(then, every_frames) != last_fix(now, every_frames) =>
             {
                 let error =
-                    |frame: u64| square(noise) + drifted(seconds(frame - last_fix(frame, every_frames)));
+                    |frame: u64| square(noise) + drifted(seconds(last_fix(frame, every_frames), frame));
                 error(then) + error(now)
             }
             _ => drifted(since),
         };
         // The heading was wrong by its drift since the start. The ground was placed beside its place by that angle over the
         // distance from which it was seen; what is left of it now is the angle over the way, and the drift since over the rest.
-        by_position + square(self.heading * (way * seconds(then) + away * since))
+        by_position + square(self.heading * (way * seconds(0, then) + away * since))
     }
 }
 
@@ -66,7 +76,7 @@ mod tests {
 
     /// The standard deviation of the displacement, metres, at ten frames a second.
     fn displaced(errors: LocalisationErrors, then: u64, now: u64, way: f64, away: f64) -> f64 {
-        KnownDrift::of(&errors, 10.0).displacement_variance(then, now, way, away).sqrt()
+        KnownDrift::of(&errors, 10.0).displacement_variance(then, now, way, away, |_| 0.0).sqrt()
     }
 
     #[test]
@@ -88,6 +98,31 @@ mod tests {
         let expected = (2.0 * 0.03_f64 * 0.03 + 0.005 * 0.005 + 0.01 * 0.01).sqrt();
         assert!((displaced(fixed, 110, 920, 6.0, 1.0) - expected).abs() < 1e-12);
         assert!((displaced(fixed, 110, 120, 6.0, 1.0) - 0.005).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_pause_is_time_that_drifts() {
+        // 5 mm a second; a pause of 8 s after frame 60 makes 28 s of 20 s. Nothing before it is older by it, nor what is
+        // measured after it. The heading was wrong by 6 s of drift before the pause, and by 14 s after it.
+        let errors = LocalisationErrors { position_drift: DVec2::new(-0.003, 0.004), ..Default::default() };
+        let paused = |frame: u64| if frame > 60 { 8.0 } else { 0.0 };
+        let moved = |errors: &LocalisationErrors, then, now, way, away| {
+            KnownDrift::of(errors, 10.0).displacement_variance(then, now, way, away, paused).sqrt()
+        };
+        for (then, now, expected) in [(50, 250, 0.14), (60, 61, 0.0405), (20, 60, 0.02), (61, 101, 0.02)] {
+            let found = moved(&errors, then, now, 6.0, 1.0);
+            assert!((found - expected).abs() < 1e-12, "{found} from {then} to {now}");
+        }
+        let turned = LocalisationErrors { heading_drift: -0.001, ..Default::default() };
+        assert!((moved(&turned, 60, 60, 4.0, 0.0) - 0.024).abs() < 1e-12);
+        assert!((moved(&turned, 70, 70, 4.0, 0.0) - 0.06).abs() < 1e-12);
+        // A fix every 10 s ends the drift: of 2 s after the fix of frame 0, and of 3 s and the pause.
+        let fixes = Some(PositionFixes { every_frames: 100, noise: 0.03 });
+        let fixed = LocalisationErrors { fixes, ..errors };
+        let paused = |frame: u64| if frame > 110 { 8.0 } else { 0.0 };
+        let found = KnownDrift::of(&fixed, 10.0).displacement_variance(20, 130, 1.0, 1.0, paused);
+        let expected = 2.0 * 0.03_f64 * 0.03 + 0.01 * 0.01 + 0.055 * 0.055;
+        assert!((found - expected).abs() < 1e-12, "{found}");
     }
 
     #[test]

@@ -37,6 +37,12 @@ pub trait LocalMapper: Debug + Send {
     /// Takes a vertical scan at rest: the points of all its stripes. `clear_map`: the old map is to be forgotten first.
     fn scan(&mut self, sensed: &LocalisationReading, points: Vec<StripePoint>, clear_map: bool) -> MapUpdate;
 
+    /// The vehicle stands for so many seconds after the last frame, before the next one: the time of a scan. By default nothing
+    /// happens.
+    fn pause(&mut self, seconds: f64) {
+        let _ = seconds;
+    }
+
     /// The elevation map. [`ElevationMap::insert`] and [`ElevationMap::set_measured`] fill one.
     fn map(&self) -> &ElevationMap;
 
@@ -51,6 +57,10 @@ impl LocalMapper for Mapper {
 
     fn scan(&mut self, sensed: &LocalisationReading, points: Vec<StripePoint>, clear_map: bool) -> MapUpdate {
         self.update_from_scan(sensed, points, clear_map)
+    }
+
+    fn pause(&mut self, seconds: f64) {
+        self.pause(seconds);
     }
 
     fn map(&self) -> &ElevationMap {

@@ -61,12 +61,26 @@ pub struct Localisation {
     /// Measured minus true position, global x and y, metres.
     error: DVec2,
     frame: u64,
+    /// Time of all pauses so far, and of those since the last reading, seconds.
+    paused: [f64; 2],
 }
 
 impl Localisation {
     /// Sensors with these errors that are read `frame_rate` times per second. The seed determines the noise.
     pub fn new(errors: LocalisationErrors, seed: u64, frame_rate: f64) -> Self {
-        Self { errors, noise_stream: NoiseStream { seed }, frame_rate, error: DVec2::ZERO, frame: 0 }
+        Self {
+            errors,
+            noise_stream: NoiseStream { seed },
+            frame_rate,
+            error: DVec2::ZERO,
+            frame: 0,
+            paused: [0.0; 2],
+        }
+    }
+
+    /// Time goes on by so many seconds while the vehicle stands and no sensor is read: position and heading drift.
+    pub fn pause(&mut self, seconds: f64) {
+        self.paused = self.paused.map(|so_far| so_far + seconds);
     }
 
     /// Reads all sensors of a vehicle with this true pose. Call it once per frame, in order.
@@ -86,9 +100,10 @@ impl Localisation {
     /// # Ok::<(), raypencil_scene::SceneError>(())
     /// ```
     pub fn read(&mut self, stance: &Stance, ground: &HeightIndex) -> LocalisationReading {
-        let Self { errors, noise_stream, frame, .. } = *self;
+        let Self { errors, noise_stream, frame, paused: [paused, since], .. } = *self;
+        self.paused[1] = 0.0;
         if frame > 0 {
-            let dt = 1.0 / self.frame_rate;
+            let dt = 1.0 / self.frame_rate + since;
             let walk = DVec2::from_array(noise_stream.gaussians(Purpose::PositionWalk, frame));
             self.error += errors.position_drift * dt + walk * (errors.position_walk * dt.sqrt());
         }
@@ -99,7 +114,7 @@ impl Localisation {
         }
         let [pitch, roll] = noise_stream.gaussians(Purpose::Tilt, frame);
         let [heading, _] = noise_stream.gaussians(Purpose::Heading, frame);
-        let drifted = errors.heading_drift * (frame as f64 / self.frame_rate);
+        let drifted = errors.heading_drift * (frame as f64 / self.frame_rate + paused);
         let (bias, noise, truth) = (errors.attitude_bias, errors.attitude_noise, stance.attitude);
         let attitude = Attitude {
             heading: truth.heading + bias.heading + drifted + noise * heading,

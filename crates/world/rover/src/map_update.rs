@@ -199,7 +199,10 @@ impl ElevationMap {
 
     fn aged(&self, place: DVec2, odometer: f64, frame: u64) -> f64 {
         let (way, away) = (self.odometer - odometer, (place - self.place(self.centre())).length());
-        let moved = self.drift.displacement_variance(frame, self.frame, way, away);
+        let paused = |frame: u64| -> f64 {
+            self.pauses.iter().filter(|(after, _)| *after < frame).map(|(_, seconds)| seconds).sum()
+        };
+        let moved = self.drift.displacement_variance(frame, self.frame, way, away, paused);
         AGEING_SLOPE * AGEING_SLOPE * moved
     }
 

@@ -105,6 +105,13 @@ impl Mapper {
         self
     }
 
+    /// The vehicle stands for so many seconds after the last update: what was measured so far ages meanwhile.
+    pub fn pause(&mut self, seconds: f64) {
+        if seconds > 0.0 {
+            self.map.pauses.push((self.map.frame, seconds));
+        }
+    }
+
     /// The elevation map.
     pub fn map(&self) -> &ElevationMap {
         &self.map

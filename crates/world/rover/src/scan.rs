@@ -17,15 +17,23 @@ pub struct Sweep {
     /// Whether the camera is panned with the beams. In the paper it is: in the scan mode "tables must be regenerated at
     /// every camera and beam configuration" (§8).
     pub camera: bool,
+    /// Time that each position takes, seconds. The vehicle stands meanwhile, and its clock goes on.
+    pub step_time: f64,
 }
 
 impl Default for Sweep {
     /// CHOICE: from 10 degrees up to 40 degrees down in steps of half a degree. On level ground the stripes of the
     /// default rig then lie between 9.7 m and the front wheels. For a beam at height h, neighbouring stripes at
     /// distance d are (h^2 + d^2) / h times the angular step apart: 0.16 m at 6 m, 0.3 m at 8 m. Extrapolation from
-    /// both sides closes these gaps.
+    /// both sides closes these gaps. A scan takes no time, since the paper has no word of it.
     fn default() -> Self {
-        Self { from: (-10.0_f64).to_radians(), to: 40.0_f64.to_radians(), steps: 101, camera: true }
+        Self {
+            from: (-10.0_f64).to_radians(),
+            to: 40.0_f64.to_radians(),
+            steps: 101,
+            camera: true,
+            step_time: 0.0,
+        }
     }
 }
 
@@ -40,8 +48,20 @@ impl Sweep {
         })
     }
 
+    /// Time of a whole scan, seconds: each position takes `step_time`.
+    ///
+    /// ```
+    /// use raypencil_rover::Sweep;
+    ///
+    /// assert_eq!(Sweep { steps: 11, step_time: 0.5, ..Sweep::default() }.duration(), 5.5);
+    /// ```
+    pub fn duration(&self) -> f64 {
+        f64::from(self.steps) * self.step_time
+    }
+
     /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
+        check_range(|| format!("{field}.step_time"), self.step_time, 0.0, 1e4, "s")?;
         check_range(|| format!("{field}.from"), self.from, -3.2, 3.2, "rad")?;
         check_range(|| format!("{field}.to"), self.to, -3.2, 3.2, "rad")?;
         check_count(|| format!("{field}.steps"), self.steps.into(), 1, 100_000)

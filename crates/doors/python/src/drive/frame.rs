@@ -89,17 +89,16 @@ fn exposure_name(exposure: &Exposure) -> String {
     exposure.beam.map_or("all".into(), |beam| format!("beam{beam}"))
 }
 
-/// All of it. `frame_rate`: frames per second. `is_signed`: images may have negative numbers.
+/// All of it. `is_signed`: images may have negative numbers.
 pub(super) fn frame_dict<'py>(
     py: Python<'py>,
     replayed: &ReplayedFrame,
-    frame_rate: f64,
     is_signed: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let ReplayedFrame { frame, map, images } = replayed;
     let dict = PyDict::new(py);
     dict.set_item("index", frame.index)?;
-    dict.set_item("time", frame.index as f64 / frame_rate)?;
+    dict.set_item("time", frame.time)?;
     dict.set_item("driven", frame.place.driven)?;
     dict.set_item("true_pose", pose_dict(py, &frame.stance.pose())?)?;
     dict.set_item("believed_pose", pose_dict(py, &frame.believed)?)?;

@@ -55,7 +55,6 @@ pub(crate) struct DriveCore {
     frames: Mutex<Option<Receiver<Box<ReplayedFrame>>>>,
     thread: Mutex<Option<DriveThread>>,
     planned: Arc<AtomicU64>,
-    frame_rate: f64,
     is_signed: bool,
     ended: Mutex<Option<Ended>>,
 }
@@ -194,7 +193,7 @@ impl DriveCore {
             let job = wish.job(&scene)?;
             let contents = wish.contents()?;
             let (job, planned) = (Arc::new(job), Arc::default());
-            let (frame_rate, is_signed) = (job.plan.route.frame_rate, job.subtract_unlit);
+            let is_signed = job.subtract_unlit;
             let (listener, seen) = sync_channel(AHEAD);
             let (taker, frames) = sync_channel(AHEAD);
             let plan = &job.plan;
@@ -229,7 +228,6 @@ impl DriveCore {
                 frames: Mutex::new(Some(frames)),
                 thread: Mutex::new(Some(thread)),
                 planned,
-                frame_rate,
                 is_signed,
                 ended: Mutex::default(),
             })
@@ -244,7 +242,7 @@ impl DriveCore {
                 frames.as_ref().map(|frames| frames.recv_timeout(PATIENCE))
             });
             match taken {
-                Some(Ok(frame)) => return frame_dict(py, &frame, self.frame_rate, self.is_signed).map(Some),
+                Some(Ok(frame)) => return frame_dict(py, &frame, self.is_signed).map(Some),
                 Some(Err(RecvTimeoutError::Timeout)) => {}
                 Some(Err(RecvTimeoutError::Disconnected)) | None => return self.end(py).map(|()| None),
             }

@@ -24,17 +24,16 @@ pub(super) struct DriveBag {
     bag: BagWriter,
     /// True and believed pose in the frame before.
     before: Option<[Pose; 2]>,
+    /// Time of all scans so far, and of one in the frame before, seconds.
+    paused: [f64; 2],
+    /// Time of the last message.
+    last: Stamp,
 }
 
-/// Time of a frame. CHOICE: a drive begins at 1 s, because the time 0 means "no time" in ROS.
-fn stamp(job: &DriveJob, frame: u64) -> Stamp {
-    stamp_after(job, frame, 0.0)
-}
-
-/// The same, so many seconds after it.
-fn stamp_after(job: &DriveJob, frame: u64, seconds: f64) -> Stamp {
-    let seconds = 1.0 + frame as f64 / job.plan.route.frame_rate + seconds;
-    Stamp::from_nanoseconds((seconds * 1e9).round() as u64)
+/// Time of a frame or an exposure, given in seconds after the first frame. CHOICE: a drive begins at 1 s, because the time 0
+/// means "no time" in ROS.
+fn stamp(seconds: f64) -> Stamp {
+    Stamp::from_nanoseconds(((1.0 + seconds) * 1e9).round() as u64)
 }
 
 /// Frame of reference of the camera, panned in a position of a scan or as it is mounted.
@@ -46,7 +45,7 @@ impl DriveBag {
     /// Begins a bag with the fixed frames of reference.
     pub(super) fn create(folder: &Path, job: &DriveJob) -> Result<Self, FileError> {
         let mut bag = BagWriter::create(&folder.join("rosbag"))?;
-        let at = stamp(job, 0);
+        let at = stamp(0.0);
         let rig = &job.plan.rig;
         let mut transforms = vec![transform(MAP, ODOM, at, &Pose::IDENTITY)];
         transforms.push(transform(BELIEVED, &camera_frame(None), at, &rig.camera.vehicle_from_sensor));
@@ -62,7 +61,7 @@ impl DriveBag {
             }
         }
         bag.write(&Topic::latched("/tf_static"), at, &TfMessage { transforms })?;
-        Ok(Self { bag, before: None })
+        Ok(Self { bag, before: None, paused: [0.0; 2], last: at })
     }
 
     pub(super) fn image(
@@ -71,14 +70,13 @@ impl DriveBag {
         exposure: &Exposure,
         taken: &CameraImage,
     ) -> Result<(), FileError> {
-        let at = stamp(job, exposure.frame);
-        // In a scan all exposures are at the time of the frame.
         let after = match exposure.step {
             None => job.plan.times.lit(exposure.beam.unwrap_or(0)),
-            Some(_) => 0.0,
+            Some(step) => f64::from(step) * job.plan.sweep.step_time,
         };
-        let taken_at = stamp_after(job, exposure.frame, after);
-        let header = Header { stamp: taken_at, frame_id: camera_frame(exposure.step) };
+        let at = stamp(exposure.frame as f64 / job.plan.route.frame_rate + self.paused[0] + after);
+        self.last = at;
+        let header = Header { stamp: at, frame_id: camera_frame(exposure.step) };
         let scan = if exposure.step.is_some() { "/scan" } else { "" };
         let lit = exposure.beam.map_or("all".into(), |beam| format!("beam{beam}"));
         let topic = |name: &str| Topic::new(format!("/camera{scan}/{lit}/{name}"));
@@ -94,12 +92,17 @@ impl DriveBag {
         frame: &DriveFrame,
         map: &ElevationMap,
     ) -> Result<(), FileError> {
-        let at = stamp(job, frame.index);
-        let header = |name: &str| Header { stamp: at, frame_id: name.into() };
+        let begin = stamp(frame.time);
+        // Images that were taken after the beginning of the frame are in the bag already: no message is before another.
+        let at = begin.max(self.last);
+        let header = |name: &str| Header { stamp: begin, frame_id: name.into() };
         let (truth, believed) = (frame.stance.pose(), frame.believed);
-        let transforms = vec![transform(MAP, TRUTH, at, &truth), transform(ODOM, BELIEVED, at, &believed)];
+        let transforms =
+            vec![transform(MAP, TRUTH, begin, &truth), transform(ODOM, BELIEVED, begin, &believed)];
         self.bag.write(&Topic::new("/tf"), at, &TfMessage { transforms })?;
-        let elapsed = 1.0 / job.plan.route.frame_rate;
+        let elapsed = 1.0 / job.plan.route.frame_rate + self.paused[1];
+        self.paused[1] = frame.scan.map_or(0.0, |_| job.plan.sweep.duration());
+        self.paused[0] += self.paused[1];
         // What the vehicle knows of its errors: nothing of x and y.
         let (z, turn) = (frame.update.elevation_error, job.plan.errors.attitude_noise);
         let known = [0.0, 0.0, z * z, turn * turn, turn * turn, turn * turn];
@@ -120,7 +123,7 @@ impl DriveBag {
 
     /// Puts the bag in its place, with the recording's `setup.json` in it.
     pub(super) fn finish(mut self, job: &DriveJob, setup: &str) -> Result<(), FileError> {
-        self.bag.attach("setup.json", "application/json", stamp(job, 0), setup.as_bytes())?;
+        self.bag.attach("setup.json", "application/json", stamp(0.0), setup.as_bytes())?;
         self.bag.finish()
     }
 }

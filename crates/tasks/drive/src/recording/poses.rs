@@ -32,8 +32,8 @@ impl PoseFiles {
         })
     }
 
-    pub(super) fn add(&mut self, frame: &DriveFrame, frame_rate: f64) -> Result<(), FileError> {
-        let time = frame.index as f64 / frame_rate;
+    pub(super) fn add(&mut self, frame: &DriveFrame) -> Result<(), FileError> {
+        let time = frame.time;
         let (truth, believed) = (numbers(&frame.stance.pose()), numbers(&frame.believed));
         let sensed = &frame.sensed;
         let angles = sensed.attitude;

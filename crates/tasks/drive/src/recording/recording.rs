@@ -96,7 +96,7 @@ impl Recording {
             return Err(failure);
         }
         self.start_elevation.get_or_insert(frame.stance.position.z);
-        self.poses.add(frame, job.plan.route.frame_rate)?;
+        self.poses.add(frame)?;
         self.sectors.add(frame, judged)?;
         if let Some(points) = &mut self.points {
             points.add(frame)?;

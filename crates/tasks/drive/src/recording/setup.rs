@@ -65,6 +65,7 @@ pub(super) fn setup_json(job: &DriveJob, start_elevation: f64) -> String {
             "to": plan.sweep.to,
             "steps": plan.sweep.steps,
             "camera": plan.sweep.camera,
+            "step_time": plan.sweep.step_time,
             "clear_map": scans.clear_map,
         })
     });

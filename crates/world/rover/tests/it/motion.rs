@@ -4,7 +4,8 @@ use std::sync::{Arc, Mutex};
 
 use glam::DVec2;
 use raypencil_rover::{
-    CameraImage, Drive, DriveFrame, DrivePlan, ExposureMode, ExposureTimes, Extraction, Route, StripeLocation,
+    CameraImage, Drive, DriveFrame, DrivePlan, ExposureMode, ExposureTimes, Extraction, LocalisationErrors,
+    Route, ScanRule, StripeLocation, Sweep,
 };
 use raypencil_scanline::Scanline;
 use raypencil_scene::{Image, Mesh, Precision, RenderOutput, Renderer, Request, Scene};
@@ -186,6 +187,42 @@ fn the_beams_in_turn_see_the_ramp_from_different_places() {
             // A quarter of a row of the image, at 3 m less than 5 mm of height, for pixels that are lit in part.
             assert!((mean - SLOPE * farther).abs() < 5e-3, "beam {beam}: {mean} for {}", SLOPE * farther);
         }
+    }
+}
+
+#[test]
+fn a_scan_takes_the_time_of_its_positions_and_sensors_drift_meanwhile() {
+    // One frame a second for 3 s, 0.3 m each; scans in frame 0 and, after 0.5 m, in frame 2. Each takes 3 x 4 s.
+    let mesh = extruded(&LEVEL);
+    let errors = LocalisationErrors {
+        position_drift: DVec2::new(0.01, -0.02),
+        heading_drift: 0.001,
+        ..LocalisationErrors::default()
+    };
+    let scans = Some(ScanRule { every: Some(0.5), inconsistency: None, ..ScanRule::default() });
+    let sweep = Sweep { steps: 3, step_time: 4.0, ..Sweep::default() };
+    let mut plan = DrivePlan { scans, sweep, errors, ..plan(ExposureTimes::default()) };
+    plan.route.waypoints = vec![DVec2::new(0.9, 0.0)];
+    let (frames, _) = driven(plan.clone(), &mesh);
+    let is_scan: Vec<bool> = frames.iter().map(|frame| frame.scan.is_some()).collect();
+    assert_eq!(is_scan, [true, false, true, false]);
+    for (frame, time) in frames.iter().zip([0.0, 13.0, 14.0, 27.0]) {
+        assert_eq!(frame.time, time);
+        // The route does not go on meanwhile, the drift does.
+        assert!((frame.place.driven - 0.3 * frame.index as f64).abs() < 1e-12);
+        let off = frame.sensed.position - frame.stance.position.truncate();
+        assert!((off - errors.position_drift * time).length() < 1e-12, "{off} at {time}");
+        let turned = frame.sensed.attitude.heading - frame.stance.attitude.heading;
+        assert!((turned - 0.001 * time).abs() < 1e-12, "{turned} at {time}");
+    }
+    // Without a time of its positions a scan is as short as a frame.
+    plan.sweep.step_time = 0.0;
+    let times: Vec<f64> = driven(plan.clone(), &mesh).0.iter().map(|frame| frame.time).collect();
+    assert_eq!(times, [0.0, 1.0, 2.0, 3.0]);
+    for (step_time, is_refused) in [(-1.0, true), (1e4, false), (1.1e4, true)] {
+        plan.sweep.step_time = step_time;
+        let field = plan.validate("drive").err().map(|error| error.field);
+        assert_eq!(field.as_deref(), is_refused.then_some("drive.sweep.step_time"), "{step_time}");
     }
 }
 

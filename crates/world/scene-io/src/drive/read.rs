@@ -70,6 +70,7 @@ pub(crate) struct DriveKeys {
     scans: Option<bool>,
     scan_every_m: Key<f64>,
     scan_steps: Key<i64>,
+    scan_step_s: Key<f64>,
     scan_from_deg: Key<f64>,
     scan_to_deg: Key<f64>,
     scan_inconsistency_m: Key<f64>,
@@ -381,6 +382,7 @@ impl Source<'_> {
         let of_scans = [
             span(&keys.scan_every_m),
             span(&keys.scan_steps),
+            span(&keys.scan_step_s),
             span(&keys.scan_from_deg),
             span(&keys.scan_to_deg),
             span(&keys.scan_inconsistency_m),
@@ -400,6 +402,7 @@ impl Source<'_> {
         rule.every = every.or(rule.every);
         let sweep = &mut plan.sweep;
         self.integer(&keys.scan_steps, "drive.scan_steps", &mut sweep.steps, 1..=1000, "")?;
+        self.number(&keys.scan_step_s, "drive.scan_step_s", &mut sweep.step_time, 0.0..=1e4, "seconds")?;
         let angles = [
             ("scan_from_deg", &keys.scan_from_deg, &mut sweep.from),
             ("scan_to_deg", &keys.scan_to_deg, &mut sweep.to),

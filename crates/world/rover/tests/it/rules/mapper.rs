@@ -2,7 +2,8 @@
 
 use glam::{DVec2, DVec3};
 use raypencil_rover::{
-    Attitude, ElevationSource, LocalisationReading, MapRules, MapSize, Mapper, StartRule, Vehicle,
+    Attitude, ElevationSource, KnownDrift, KnownNoise, LocalisationReading, MapRules, MapSize, Mapper,
+    StartRule, Vehicle,
 };
 
 const NO_POINTS: [DVec3; 0] = [];
@@ -119,4 +120,24 @@ fn a_scan_clears_the_map() {
     // Without `clear_map` the other elevations stay.
     mapper.update_from_scan(&sensed(0.0, Some(0.0)), [DVec3::new(-4.0, 0.0, 0.0)], false);
     assert_eq!(known_count(&mapper), 19 * 13 + 21);
+}
+
+#[test]
+fn a_pause_ages_measurements_as_so_much_time_between_frames_does() {
+    // 5 mm a second: in 8 s a point of 1 cm gets another 4 cm of error, and the new point counts nearly alone.
+    let elevation = |frame_time: f64, pause: f64| {
+        let drift = KnownDrift { frame_time, position: 5e-3, ..KnownDrift::default() };
+        let noise = KnownNoise { drift, ..KnownNoise::default() };
+        let here = sensed(0.0, Some(0.0));
+        let mut mapper = mapper_on(&here, MapRules::MENDED).with_noise(noise);
+        let at = |z: f64| [DVec3::new(3.0, 0.0, z)];
+        mapper.update(&here, at(0.0));
+        mapper.pause(pause);
+        mapper.update(&here, at(0.02));
+        let map = mapper.map();
+        map.elevation(map.nearest(DVec2::new(3.0, 0.0))).unwrap() - mapper.pose().position.z
+    };
+    let (paused, slow, none) = (elevation(0.1, 7.9), elevation(8.0, 0.0), elevation(0.1, 0.0));
+    assert!((paused - slow).abs() < 1e-12, "{paused} {slow}");
+    assert!(paused - none > 5e-3, "{paused} {none}");
 }
