@@ -122,7 +122,7 @@ impl DriveBag {
     }
 
     /// Puts the bag in its place, with the recording's `setup.json` in it.
-    pub(super) fn finish(mut self, job: &DriveJob, setup: &str) -> Result<(), FileError> {
+    pub(super) fn finish(mut self, setup: &str) -> Result<(), FileError> {
         self.bag.attach("setup.json", "application/json", stamp(0.0), setup.as_bytes())?;
         self.bag.finish()
     }

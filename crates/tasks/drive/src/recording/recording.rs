@@ -117,7 +117,7 @@ impl Recording {
         self.points.map_or(Ok(()), PointFiles::finish)?;
         self.maps.map_or(Ok(()), MapFiles::finish)?;
         let setup = setup_json(job, self.start_elevation.unwrap_or(0.0));
-        self.bag.map_or(Ok(()), |bag| bag.finish(job, &setup))?;
+        self.bag.map_or(Ok(()), |bag| bag.finish(&setup))?;
         write_atomically(self.folder.join(LAST), |file| file.write_all(setup.as_bytes()))?;
         self.output.finish()
     }
