@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::pattern::{Mounting, PatternRays};
+use crate::pattern::{Mounting, PatternRays, Returns};
 use crate::{CastRay, Pose, RaySet, SceneError, Sides};
 
 /// Greatest length of a ray set's name.
@@ -33,6 +33,8 @@ pub struct NamedRaySet {
     pub times: Option<Vec<f64>>,
     /// Shares of a beam's power along the last dimension, if rays are parts of beams.
     pub weights: Option<Vec<f64>>,
+    /// Which returns of a beam are told, if rays are parts of beams; `None`: rays stand for themselves.
+    pub returns: Option<Returns>,
     /// Elevations of the channels of a spinning head along the second dimension, degrees.
     pub elevations_deg: Option<Vec<f64>>,
     /// Where the pattern's own frame stands in the mesh's.
@@ -46,9 +48,9 @@ impl NamedRaySet {
     /// Names the first ray that is wrong, or the name if it is none.
     pub fn new(name: &str, pattern: PatternRays, sides: Sides) -> Result<Self, SceneError> {
         Self::check_name(name)?;
-        let PatternRays { shape, rays, times, weights, elevations_deg, mounting } = pattern;
+        let PatternRays { shape, rays, times, weights, returns, elevations_deg, mounting } = pattern;
         let set = RaySet::new(rays, sides)?;
-        Ok(Self { name: name.to_string(), shape, set, times, weights, elevations_deg, mounting })
+        Ok(Self { name: name.to_string(), shape, set, times, weights, returns, elevations_deg, mounting })
     }
 
     /// Up direction of the pattern at its first pose, in the mesh's frame.

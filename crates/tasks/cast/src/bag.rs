@@ -11,8 +11,9 @@ use raypencil_rosbag::{
 use raypencil_scene::pattern::Mounting;
 use raypencil_scene::{NamedRaySet, Pose};
 
-use crate::answers::{Answers, FirstHit};
-use crate::cloud::{intensity, rings};
+use crate::answers::Answers;
+use crate::cloud::{Spot, SpotReturn, places, rings, spots};
+use crate::returns::BeamReturns;
 
 /// The frame of the mesh, and that of the sensor (REP-105 has `map`).
 const MAP: &str = "map";
@@ -20,6 +21,19 @@ const SENSOR: &str = "lidar";
 
 /// Earliest time of a message, seconds: the time 0 means "no time" in ROS.
 const FIRST_S: f64 = 1.0;
+
+/// What follows the fields of a driver in clouds of returns: name, place after them and type of each.
+const RETURN_FIELDS: [(&str, u32, u8); 6] = [
+    ("share", 0, PointField::FLOAT32),
+    ("share_other", 4, PointField::FLOAT32),
+    ("share_missed", 8, PointField::FLOAT32),
+    ("return", 12, PointField::UINT8),
+    ("returns", 13, PointField::UINT8),
+    ("mixed", 14, PointField::UINT8),
+];
+
+/// Their bytes, with one of filling: a multiple of what PCL aligns points to.
+const RETURN_BYTES: u32 = 16;
 
 /// Whose fields the points have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -103,24 +117,42 @@ pub struct BagForm {
     pub is_dense: bool,
 }
 
-/// Where each ray of a set belongs.
+/// Where each ray of a set, or each return, belongs.
 struct Places {
     rows: u64,
     columns: u64,
-    /// Cell of each ray, row by row.
+    /// Cell of each, row by row.
     cells: Vec<usize>,
-    /// Ring of each ray.
+    /// Ring of each.
     rings: Vec<u64>,
 }
 
 impl Places {
     /// Velodyne: a row for each firing sequence, its rings from below. Ouster: a row for each channel, from above, and a column
     /// for each sequence. A pattern without elevations keeps its own rows and columns.
-    fn of(set: &NamedRaySet, fields: BagFields) -> Self {
-        let count = set.set.rays().len() as u64;
-        let columns = set.shape.last().copied().unwrap_or(1);
+    ///
+    /// The returns of a beam stand side by side.
+    fn of(set: &NamedRaySet, returns: Option<&BeamReturns>, fields: BagFields) -> Self {
+        let (shape, _, of_each) = places(set, returns);
+        let one = Self::of_beams(set, shape, fields);
+        let spread = |of: &[usize]| -> Vec<usize> {
+            of.iter()
+                .flat_map(|cell| (0..of_each as usize).map(move |place| cell * of_each as usize + place))
+                .collect()
+        };
+        Self {
+            rows: one.rows,
+            columns: one.columns * of_each,
+            cells: spread(&one.cells),
+            rings: one.rings.iter().flat_map(|ring| std::iter::repeat_n(*ring, of_each as usize)).collect(),
+        }
+    }
+
+    fn of_beams(set: &NamedRaySet, shape: &[u64], fields: BagFields) -> Self {
+        let count: u64 = shape.iter().product();
+        let columns = shape.last().copied().unwrap_or(1);
         let rows = count.checked_div(columns).unwrap_or(0);
-        let by_channel = rings(set).filter(|_| set.shape.len() == 2);
+        let by_channel = rings(set).filter(|_| shape.len() == 2);
         let Some(ranks) = by_channel else {
             let ring =
                 |index: u64| if fields == BagFields::Ouster { index / columns } else { index % columns };
@@ -155,6 +187,9 @@ impl Places {
 /// Times are those of the set, or later by as much as brings the first of them to 1 s. The cloud's header has the time of the
 /// first ray, and it is recorded at that of the last. Without order the points are in the order of the rays; with it, cells
 /// without a point have NaN, and `is_dense` is false.
+///
+/// Of a set that asks for returns a point stands for each of them, those of a beam side by side. Its fields are followed by `share`,
+/// `share_other`, `share_missed` f32, `return`, `returns` and `mixed` u8, and a byte of filling.
 ///
 /// # Errors
 /// The file cannot be written, or the points take more than 4 GiB; the message names the folder.
@@ -206,8 +241,10 @@ impl<'a> ScanBag<'a> {
 
     /// The next scan.
     pub(crate) fn add(&mut self, answers: &Answers, scan: &NamedRaySet) -> Result<(), FileError> {
-        let (_, point_bytes) = self.form.fields.layout();
-        let count = answers.first.len() as u64;
+        let returns = BeamReturns::of(answers, scan);
+        let (_, own_bytes) = self.form.fields.layout();
+        let point_bytes = own_bytes + if returns.is_some() { RETURN_BYTES } else { 0 };
+        let count = spots(answers, returns.as_ref()).len() as u64;
         if count * u64::from(point_bytes) > u64::from(u32::MAX) {
             let found = format!("{count} points of {point_bytes} bytes");
             return Err(FileError::Cloud(Fault::new("points", found, "at most 4 GiB").in_file(self.folder)));
@@ -217,7 +254,7 @@ impl<'a> ScanBag<'a> {
         let (first, last) =
             (times().reduce(f64::min).unwrap_or(0.0), times().reduce(f64::max).unwrap_or(0.0));
         self.tell(&[first, last], last)?;
-        let cloud = cloud(answers, scan, self.form, (self.at(first), &|index| time_of(index) - first));
+        let cloud = cloud((answers, returns.as_ref()), scan, self.form, (self.at(first), first));
         self.bag.write(&Topic::new("/points"), self.at(last), &cloud)
     }
 
@@ -264,34 +301,43 @@ fn transform(stamp: Stamp, pose: &Pose) -> TransformStamped {
 }
 
 fn cloud(
-    answers: &Answers,
+    (answers, returns): (&Answers, Option<&BeamReturns>),
     set: &NamedRaySet,
     form: BagForm,
-    (stamp, after): (Stamp, &dyn Fn(usize) -> f64),
+    (stamp, first_s): (Stamp, f64),
 ) -> PointCloud2 {
     let BagForm { fields, is_dense } = form;
-    let (layout, point_step) = fields.layout();
+    let (layout, own_step) = fields.layout();
+    let mut layout = layout.to_vec();
+    let mut point_step = own_step;
+    if returns.is_some() {
+        layout.extend(RETURN_FIELDS.map(|(name, at, datatype)| (name, own_step + at, datatype)));
+        point_step += RETURN_BYTES;
+    }
     let step = point_step as usize;
-    let places = Places::of(set, fields);
+    let places = Places::of(set, returns, fields);
     let is_dense = is_dense || fields == BagFields::Livox;
-    let bytes = |index: usize| {
-        let hit = answers.first[index].hit();
-        let time = set.times.as_ref().map_or(0.0, |times| times[index]);
+    let bytes = |(spot, ring): (Spot<'_>, u64)| {
+        let time = set.times.as_ref().map_or(0.0, |times| times[spot.ray]);
         let pose = set.mounting.at(time).unwrap_or_else(|| set.mounting.first());
-        let place = hit.map_or(DVec3::NAN, |hit| pose.inverse() * hit.point);
-        point(fields, (place, hit), places.rings[index], after(index), stamp)
+        let place = spot.read.hit().map_or(DVec3::NAN, |hit| pose.inverse() * hit.point);
+        let mut bytes = point(fields, (place, &spot), ring, time - first_s, stamp);
+        bytes.extend(spot.of_return.iter().flat_map(SpotReturn::driver_bytes));
+        bytes
     };
+    let each = || spots(answers, returns).zip(places.rings.iter().copied());
+    let has_all = spots(answers, returns).all(|spot| spot.read.hit().is_some());
     let (data, height, width) = match is_dense {
         true => {
-            let hits = (0..answers.first.len()).filter(|&index| answers.first[index].hit().is_some());
+            let hits = each().filter(|(spot, _)| spot.read.hit().is_some());
             let data: Vec<u8> = hits.flat_map(bytes).collect();
             let points = data.len() / step;
             (data, 1, points as u32)
         }
         false => {
-            let mut data = vec![0; answers.first.len() * step];
-            for (index, &cell) in places.cells.iter().enumerate() {
-                data[cell * step..(cell + 1) * step].copy_from_slice(&bytes(index));
+            let mut data = vec![0; places.cells.len() * step];
+            for (spot, &cell) in each().zip(&places.cells) {
+                data[cell * step..(cell + 1) * step].copy_from_slice(&bytes(spot));
             }
             (data, places.rows as u32, places.columns as u32)
         }
@@ -312,20 +358,20 @@ fn cloud(
         row_step: width * point_step,
         data: data.into(),
         // The order keeps cells without a point.
-        is_dense: is_dense || answers.first.iter().all(|read| read.hit().is_some()),
+        is_dense: is_dense || has_all,
     }
 }
 
 /// The bytes of a point.
 fn point(
     fields: BagFields,
-    (place, hit): (DVec3, Option<&FirstHit>),
+    (place, spot): (DVec3, &Spot<'_>),
     ring: u64,
     after_s: f64,
     stamp: Stamp,
 ) -> Vec<u8> {
     let mut bytes: Vec<u8> = place.to_array().iter().flat_map(|part| (*part as f32).to_le_bytes()).collect();
-    let light = hit.map_or(f64::NAN, intensity) as f32;
+    let light = spot.intensity as f32;
     let nanoseconds = (after_s * 1e9).round();
     let word = |number: u64| u16::try_from(number).unwrap_or(u16::MAX).to_le_bytes();
     match fields {
@@ -342,7 +388,7 @@ fn point(
             bytes.extend(word(ring));
             // ambient, and two bytes of filling.
             bytes.extend([0; 4]);
-            let range = hit.map_or(0.0, |hit| (hit.range * 1e3).round());
+            let range = spot.read.hit().map_or(0.0, |hit| (hit.range * 1e3).round());
             bytes.extend((range as u32).to_le_bytes());
             bytes.extend([0; 12]);
         }

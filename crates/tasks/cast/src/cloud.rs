@@ -8,30 +8,149 @@ use raypencil_scene::pattern::Mounting;
 use raypencil_scene::{NamedRaySet, Pose, Reading};
 
 use crate::answers::{Answers, FirstHit};
+use crate::returns::{BeamReturn, BeamReturns};
 
 /// Stands for "no face" in a PCD file, whose fields of whole numbers have no NaN.
 const NO_FACE: u32 = u32::MAX;
 
+/// What a cloud has a place for: a ray, or a return of a beam with a width.
+pub(crate) struct Spot<'a> {
+    /// The ray; of a return its leading one, and where there is none the first of the footprint.
+    pub(crate) ray: usize,
+    /// What is read there.
+    pub(crate) read: Reading<&'a FirstHit>,
+    /// The light of it; NaN without a point.
+    pub(crate) intensity: f64,
+    /// What is told of a return.
+    pub(crate) of_return: Option<SpotReturn>,
+}
+
+/// What a cloud tells of a return beside its point.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct SpotReturn {
+    /// Its number by range, the nearest is 1; 0 without a return.
+    number: u16,
+    /// All returns of the beam.
+    returns: u16,
+    /// Whether there are several.
+    mixed: u8,
+    /// Shares of the footprint's rays: of this return, of others, of those that hit nothing.
+    pub(crate) shares: [f64; 3],
+    /// Mean of the ranges; NaN without a return.
+    pub(crate) mean_range: f64,
+}
+
+impl SpotReturn {
+    /// What the clouds of drivers get beside their own fields: `share`, `share_other`, `share_missed` f32, `return` and `returns` u8,
+    /// `mixed` u8, and a byte of filling.
+    pub(crate) fn driver_bytes(&self) -> [u8; 16] {
+        let byte = |number: u16| u8::try_from(number).unwrap_or(u8::MAX);
+        let mut bytes = [0; 16];
+        for (place, share) in bytes.chunks_exact_mut(4).zip(self.shares) {
+            place.copy_from_slice(&(share as f32).to_le_bytes());
+        }
+        bytes[12..15].copy_from_slice(&[byte(self.number), byte(self.returns), self.mixed]);
+        bytes
+    }
+}
+
+/// The places of a cloud: of each ray, or of each return that may be told.
+pub(crate) fn spots<'a>(
+    answers: &'a Answers,
+    returns: Option<&'a BeamReturns>,
+) -> impl ExactSizeIterator<Item = Spot<'a>> + 'a {
+    let count = returns.map_or(answers.first.len(), |returns| returns.told().len());
+    (0..count).map(move |index| match returns {
+        None => {
+            let read = borrowed(&answers.first[index]);
+            let intensity = read.hit().map_or(f64::NAN, |hit| intensity(hit));
+            Spot { ray: index, read, intensity, of_return: None }
+        }
+        Some(returns) => spot_of_return(answers, returns, index),
+    })
+}
+
+fn borrowed(read: &Reading<FirstHit>) -> Reading<&FirstHit> {
+    match read {
+        Reading::Hit(hit) => Reading::Hit(hit),
+        Reading::TooNear => Reading::TooNear,
+        Reading::Miss => Reading::Miss,
+    }
+}
+
+fn spot_of_return<'a>(answers: &'a Answers, returns: &BeamReturns, index: usize) -> Spot<'a> {
+    let (beam, place) = (index / returns.most(), index % returns.most());
+    let footprint = &returns.footprints()[beam];
+    let word = |number: u32| u16::try_from(number).unwrap_or(u16::MAX);
+    let told = returns.told()[index].as_ref();
+    let rays = told.map_or(0, |told| told.rays);
+    let of_return = Some(SpotReturn {
+        number: told.map_or(0, |told| word(told.number)),
+        returns: word(footprint.returns),
+        mixed: footprint.is_mixed().into(),
+        shares: [returns.share(rays), returns.share(footprint.hits - rays), returns.missed(footprint)],
+        mean_range: told.map_or(f64::NAN, |told| told.mean_range),
+    });
+    match told {
+        Some(&BeamReturn { ray, strength, .. }) => {
+            Spot { ray, read: borrowed(&answers.first[ray]), intensity: strength, of_return }
+        }
+        None => {
+            let is_too_near = place == 0 && footprint.too_near > 0;
+            let read = if is_too_near { Reading::TooNear } else { Reading::Miss };
+            Spot { ray: beam * returns.rays_of_beam(), read, intensity: f64::NAN, of_return }
+        }
+    }
+}
+
 /// Writes one point for each hit, in the order of the rays: PLY, binary, little endian, with the properties x, y, z
 /// (double), `face` (uint) and `cos_incidence` (double). (G. Turk, "The PLY polygon file format", 1994)
 ///
+/// With returns there is a point for each of them that is told, and further properties: `range`, `mean_range` and `strength` (double),
+/// `share`, `share_other` and `share_missed` (float), `return` and `returns` (ushort), `mixed` (uchar).
+///
 /// # Errors
 /// The file cannot be written; the message names it.
-pub fn write_ply(path: impl AsRef<Path>, answers: &Answers) -> Result<(), FileError> {
+pub fn write_ply(
+    path: impl AsRef<Path>,
+    answers: &Answers,
+    returns: Option<&BeamReturns>,
+) -> Result<(), FileError> {
+    let of_returns = match returns {
+        None => "",
+        Some(_) => {
+            "property double range\nproperty double mean_range\nproperty double strength\nproperty float share\n\
+             property float share_other\nproperty float share_missed\nproperty ushort return\nproperty ushort returns\n\
+             property uchar mixed\n"
+        }
+    };
+    let points = returns.map_or(answers.counts().0, |returns| returns.told().iter().flatten().count());
     write_atomically(path, |file| {
         write!(
             file,
-            "ply\nformat binary_little_endian 1.0\ncomment raypencil cast, frame of the mesh\nelement vertex {}\n\
+            "ply\nformat binary_little_endian 1.0\ncomment raypencil cast, frame of the mesh\nelement vertex {points}\n\
              property double x\nproperty double y\nproperty double z\nproperty uint face\n\
-             property double cos_incidence\nend_header\n",
-            answers.counts().0
+             property double cos_incidence\n{of_returns}end_header\n",
         )?;
-        for hit in answers.hits() {
+        for spot in spots(answers, returns) {
+            let Some(hit) = spot.read.hit() else { continue };
             for value in hit.point.to_array() {
                 file.write_all(&value.to_le_bytes())?;
             }
             file.write_all(&hit.face.0.to_le_bytes())?;
             file.write_all(&hit.cos_incidence.to_le_bytes())?;
+            let Some(SpotReturn { number, returns, mixed, shares, mean_range }) = spot.of_return else {
+                continue;
+            };
+            for value in [hit.range, mean_range, spot.intensity] {
+                file.write_all(&value.to_le_bytes())?;
+            }
+            for share in shares {
+                file.write_all(&(share as f32).to_le_bytes())?;
+            }
+            file.write_all(&number.to_le_bytes())?;
+            file.write_all(&returns.to_le_bytes())?;
+            file.write_all(&[mixed])?;
         }
         Ok(())
     })
@@ -108,6 +227,10 @@ impl CloudFrame {
 /// | `range` | float32 | distance from the ray's origin |
 /// | `face` | uint32 | the face |
 ///
+/// With returns a point stands for each that may be told, those of a beam side by side: the width is that of the beams times their
+/// number. `intensity` is then the light of the return, and after `face` there are `mean_range`, `share`, `share_other` and `share_missed`
+/// (float32), `return` and `returns` (uint16) and `mixed` (uint8).
+///
 /// VIEWPOINT has the pose of the sensor in the mesh's frame, its first one, if the points are in the sensor's frame: viewers that
 /// apply it show the cloud in its place. For points in the mesh's frame it is the identity.
 ///
@@ -116,18 +239,29 @@ impl CloudFrame {
 pub fn write_pcd(
     path: impl AsRef<Path>,
     answers: &Answers,
-    set: &NamedRaySet,
+    (set, returns): (&NamedRaySet, Option<&BeamReturns>),
     frame: CloudFrame,
 ) -> Result<(), FileError> {
-    let count = answers.first.len() as u64;
-    let width = set.shape.last().copied().unwrap_or(1);
+    let spots = spots(answers, returns);
+    let count = spots.len() as u64;
+    let (shape, rays_of_place, places) = places(set, returns);
+    let width = shape.last().copied().unwrap_or(1) * places;
     let height = count.checked_div(width).unwrap_or(0);
     let rings = rings(set);
-    // Number of rays with the same index in the second dimension, one after the other.
-    let of_channel: u64 = set.shape.iter().skip(2).product();
-    let channel_of = |index: u64| match set.shape.get(1) {
-        Some(&channels) => index / of_channel % channels,
+    // Number of places with the same index in the second dimension, one after the other.
+    let of_channel: u64 = shape.iter().skip(2).product();
+    let channel_of = |ray: usize| match shape.get(1) {
+        Some(&channels) => ray as u64 / rays_of_place / of_channel % channels,
         None => 0,
+    };
+    let [more_fields, more_sizes, more_types, more_counts] = match returns {
+        None => [""; 4],
+        Some(_) => [
+            " mean_range share share_other share_missed return returns mixed",
+            " 4 4 4 4 2 2 1",
+            " F F F F U U U",
+            " 1 1 1 1 1 1 1",
+        ],
     };
     let word = |number: u64| u16::try_from(number).unwrap_or(u16::MAX);
     let time_of = |index: usize| set.times.as_ref().map_or(0.0, |times| times[index]);
@@ -148,36 +282,53 @@ pub fn write_pcd(
         write!(
             file,
             "# .PCD v0.7 - Point Cloud Data file format\n# raypencil cast, frame of {}\nVERSION 0.7\n\
-             FIELDS x y z intensity ring time timestamp channel range face\n\
-             SIZE 4 4 4 4 2 4 8 2 4 4\nTYPE F F F F U F F U F U\nCOUNT 1 1 1 1 1 1 1 1 1 1\n\
+             FIELDS x y z intensity ring time timestamp channel range face{more_fields}\n\
+             SIZE 4 4 4 4 2 4 8 2 4 4{more_sizes}\nTYPE F F F F U F F U F U{more_types}\n\
+             COUNT 1 1 1 1 1 1 1 1 1 1{more_counts}\n\
              WIDTH {width}\nHEIGHT {height}\nVIEWPOINT {x} {y} {z} {qw} {qx} {qy} {qz}\nPOINTS {count}\nDATA binary\n",
             frame.words()
         )?;
-        for (index, read) in answers.first.iter().enumerate() {
-            let (point, intensity, range, face) = match read {
-                Reading::Hit(hit) => {
-                    let intensity = intensity(hit);
-                    (placed(index, hit.point), intensity, hit.range, hit.face.0)
-                }
-                Reading::TooNear => (DVec3::NAN, f64::NAN, f64::NEG_INFINITY, NO_FACE),
-                Reading::Miss => (DVec3::NAN, f64::NAN, f64::NAN, NO_FACE),
+        for Spot { ray, read, intensity, of_return } in spots {
+            let (point, range, face) = match read {
+                Reading::Hit(hit) => (placed(ray, hit.point), hit.range, hit.face.0),
+                Reading::TooNear => (DVec3::NAN, f64::NEG_INFINITY, NO_FACE),
+                Reading::Miss => (DVec3::NAN, f64::NAN, NO_FACE),
             };
             for value in [point.x, point.y, point.z, intensity] {
                 file.write_all(&(value as f32).to_le_bytes())?;
             }
-            let channel = channel_of(index as u64);
+            let channel = channel_of(ray);
             file.write_all(
                 &word(rings.as_ref().map_or(channel, |rings| rings[channel as usize])).to_le_bytes(),
             )?;
-            let time = time_of(index);
+            let time = time_of(ray);
             file.write_all(&((time - first_time) as f32).to_le_bytes())?;
             file.write_all(&time.to_le_bytes())?;
             file.write_all(&word(channel).to_le_bytes())?;
             file.write_all(&(range as f32).to_le_bytes())?;
             file.write_all(&face.to_le_bytes())?;
+            let Some(SpotReturn { number, returns, mixed, shares: [this, other, missed], mean_range }) =
+                of_return
+            else {
+                continue;
+            };
+            for value in [mean_range, this, other, missed] {
+                file.write_all(&(value as f32).to_le_bytes())?;
+            }
+            file.write_all(&number.to_le_bytes())?;
+            file.write_all(&returns.to_le_bytes())?;
+            file.write_all(&[mixed])?;
         }
         Ok(())
     })
+}
+
+/// The shape of what has places in a cloud, rays or beams; the rays of each; and its number of places.
+pub(crate) fn places<'a>(set: &'a NamedRaySet, returns: Option<&BeamReturns>) -> (&'a [u64], u64, u64) {
+    match (returns, set.shape.as_slice()) {
+        (Some(returns), [beams @ .., rays]) => (beams, *rays, returns.most() as u64),
+        (_, shape) => (shape, 1, 1),
+    }
 }
 
 pub(crate) fn rings(set: &NamedRaySet) -> Option<Vec<u64>> {

@@ -11,6 +11,7 @@
 //! page           the answers as a page that answers when asked
 //! pack/          packs of rays: a mesh, rays, exact answers; the check of a candidate, and what explains its mistakes
 //! range_picture  ranges as a picture, and the points from above
+//! returns        the returns of beams with a width
 //! warnings       what looks wrong in rays and their mesh
 //! write          answers as NPY arrays, and their summary
 //! text           the answers to one ray, and counts of many, as text and as JSON
@@ -46,6 +47,7 @@ mod pack;
 mod page;
 mod page_solid;
 mod range_picture;
+mod returns;
 mod scans;
 mod text;
 mod warnings;
@@ -70,6 +72,7 @@ pub use pack::{
 pub use page::{CastPage, ComparedHits, write_cast_page};
 pub use range_picture::{range_picture, top_picture};
 pub use raypencil_files::{RayArray, rays_from_bytes, read_rays};
+pub use returns::{BeamReturn, BeamReturns, Footprint};
 pub use scans::{ScansWritten, write_scans};
 pub use text::{counts_text, ray_json, ray_text};
 pub use warnings::{CastSeen, cast_warnings, cast_warnings_of, open_edges};

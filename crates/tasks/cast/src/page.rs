@@ -13,6 +13,7 @@ use crate::comparison::{Comparison, RayVerdict, Stated, comparison_headline, wro
 use crate::layout::{Layout, PageScan};
 use crate::page_solid::page_solid;
 use crate::range_picture::{range_picture, top_picture};
+use crate::returns::BeamReturns;
 use crate::text::{counts_text, ray_text};
 
 /// Maximum number of cells of all channels and sides together: it keeps a page to some ten megabytes.
@@ -330,6 +331,18 @@ impl CastPage<'_> {
             let inner: usize = self.shape.iter().skip(2).map(|&count| count as usize).product();
             let ring = cells(&|ray| rings[ray / inner % rings.len()] as f64);
             channels.push(("ring", "", both(ring, None)));
+        }
+        if let Some(returns) = self.set.and_then(|set| BeamReturns::of(answers, set)) {
+            let footprint = |ray: usize| &returns.footprints()[ray / returns.rays_of_beam()];
+            let of_ray = cells(&|ray| match returns.of_rays()[ray] {
+                0 => f64::NAN,
+                number => f64::from(number),
+            });
+            channels.push(("return", "", both(of_ray, None)));
+            let mixed = cells(&|ray| f64::from(u8::from(footprint(ray).is_mixed())));
+            channels.push(("mixed", "", both(mixed, None)));
+            let missed = cells(&|ray| returns.missed(footprint(ray)));
+            channels.push(("share that missed", "", both(missed, None)));
         }
         channels.extend([
             (

@@ -13,6 +13,7 @@ use serde_json::json;
 use crate::answers::{Questions, cast_with};
 use crate::bag::{BagForm, ScanBag};
 use crate::cloud::{CloudFrame, write_pcd};
+use crate::returns::BeamReturns;
 use crate::write::CastSource;
 
 /// What became of all scans.
@@ -73,7 +74,8 @@ pub fn write_scans(
         let answers = cast_with(&exact, scan.set.rays(), sides, Questions::default(), &Silent);
         progress.stage(&format!("scan {} of {}", index + 1, ranges.len()));
         let name = format!("scans/{index:06}.pcd");
-        write_pcd(folder.join(&name), &answers, &scan, frame)?;
+        let returns = BeamReturns::of(&answers, &scan);
+        write_pcd(folder.join(&name), &answers, (&scan, returns.as_ref()), frame)?;
         if let Some(bag) = &mut bag {
             bag.add(&answers, &scan)?;
         }
@@ -137,6 +139,7 @@ fn scan_of(set: &NamedRaySet, sequences: Range<u64>) -> Result<NamedRaySet, Scen
         set: RaySet::new(set.set.rays()[rays].to_vec(), set.set.sides())?,
         times,
         weights: set.weights.clone(),
+        returns: set.returns,
         elevations_deg: set.elevations_deg.clone(),
         mounting,
     })

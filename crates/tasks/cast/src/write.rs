@@ -14,6 +14,7 @@ use serde_json::{Value, json};
 use crate::answers::{Answers, FirstHit, GroupAtT, side_number};
 use crate::cloud::{CloudFrame, write_pcd, write_ply};
 use crate::range_picture::{range_picture, top_picture};
+use crate::returns::{BeamReturn, BeamReturns};
 use crate::warnings::cast_warnings;
 
 /// Where mesh and rays come from, for the summary.
@@ -72,6 +73,7 @@ pub fn write_answers(
 /// | --- | --- |
 /// | `time.npy`, if the set has times | f8: time at which each ray is fired, seconds |
 /// | `weight.npy`, if rays are parts of beams | f8, (k): shares of a beam's power along the last dimension |
+/// | `return.*.npy`, if the set asks for returns | the returns of its beams, as `docs/guide/lidar.md` lists them |
 /// | `cloud.ply`, `cloud.pcd` | the points: [`write_ply`], [`write_pcd`] |
 /// | `cloud-sensor.pcd`, `cloud-start.pcd` | the same in frames of the sensor: [`CloudFrame`] |
 /// | `range.png`, for two dimensions, and `top.png` | pictures, if anything is hit: [`range_picture`], [`top_picture`] |
@@ -95,10 +97,15 @@ pub fn write_set(
     if let Some(weights) = &set.weights {
         more.write("weight", &[weights.len() as u64], weights)?;
     }
-    write_ply(folder.join("cloud.ply"), answers)?;
+    let returns = BeamReturns::of(answers, set);
+    if let Some(returns) = &returns {
+        write_returns(&mut more, returns, &set.shape)?;
+        document["returns"] = returns.json();
+    }
+    write_ply(folder.join("cloud.ply"), answers, returns.as_ref())?;
     let mut clouds = vec!["cloud.ply"];
     for frame in CloudFrame::of(&set.mounting) {
-        write_pcd(folder.join(frame.file()), answers, set, *frame)?;
+        write_pcd(folder.join(frame.file()), answers, (set, returns.as_ref()), *frame)?;
         clouds.push(frame.file());
     }
     let mut pictures = Vec::new();
@@ -208,6 +215,42 @@ fn write_all(folder: &mut ArrayFolder<'_>, all: &[Vec<GroupAtT>]) -> Result<(), 
     folder.write("all.t", &count, &t)?;
     folder.write("all.group", &count, &of_groups)?;
     folder.write("all.crossing", &count, &crossings)
+}
+
+/// The returns of all beams: arrays of the rays' shape, of that of the beams, and of as many places for each beam as may be told.
+fn write_returns(
+    folder: &mut ArrayFolder<'_>,
+    returns: &BeamReturns,
+    shape: &[u64],
+) -> Result<(), FileError> {
+    let beams = shape.split_last().map_or(&[][..], |(_, beams)| beams);
+    let places: Vec<u64> = beams.iter().copied().chain([returns.most() as u64]).collect();
+    let footprints = returns.footprints();
+    folder.write("return.of_ray", shape, returns.of_rays())?;
+    folder.write("return.count", beams, &footprints.iter().map(|beam| beam.returns).collect::<Vec<_>>())?;
+    let mixed: Vec<u8> = footprints.iter().map(|beam| beam.is_mixed().into()).collect();
+    folder.write("return.mixed", beams, &mixed)?;
+    let missed: Vec<f64> = footprints.iter().map(|beam| returns.missed(beam)).collect();
+    folder.write("return.share_missed", beams, &missed)?;
+    let wholes = |of: &dyn Fn(&BeamReturn) -> u32, none: u32| -> Vec<u32> {
+        returns.told().iter().map(|told| told.as_ref().map_or(none, of)).collect()
+    };
+    let reals = |of: &dyn Fn(&BeamReturn) -> f64, none: f64| -> Vec<f64> {
+        returns.told().iter().map(|told| told.as_ref().map_or(none, of)).collect()
+    };
+    folder.write("return.number", &places, &wholes(&|told| told.number, 0))?;
+    // Its index within the footprint fits: a cone has some ten thousand rays at most.
+    let rays = returns.rays_of_beam();
+    folder.write("return.ray", &places, &wholes(&|told| (told.ray % rays) as u32, u32::MAX))?;
+    folder.write("return.range", &places, &reals(&|told| told.range, f64::INFINITY))?;
+    folder.write("return.mean_range", &places, &reals(&|told| told.mean_range, f64::INFINITY))?;
+    folder.write("return.strength", &places, &reals(&|told| told.strength, 0.0))?;
+    folder.write("return.share", &places, &reals(&|told| returns.share(told.rays), 0.0))?;
+    let other = returns.told().iter().enumerate().map(|(place, told)| {
+        let rays = told.as_ref().map_or(0, |told| told.rays);
+        returns.share(footprints[place / returns.most()].hits - rays)
+    });
+    folder.write("return.share_other", &places, &other.collect::<Vec<_>>())
 }
 
 /// The folder and the names of the arrays written to it.

@@ -106,6 +106,7 @@ impl Cone {
             rays,
             times: pattern.times.as_ref().map(repeated),
             weights: Some(self.weights()),
+            returns: None,
             elevations_deg: pattern.elevations_deg.clone(),
             mounting: pattern.mounting.clone(),
         })

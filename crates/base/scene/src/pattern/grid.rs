@@ -108,6 +108,7 @@ impl Grid {
             rays,
             times: None,
             weights: None,
+            returns: None,
             elevations_deg: None,
             mounting: Mounting::HERE,
         })

@@ -12,6 +12,7 @@ mod cone;
 mod grid;
 mod poses;
 mod presets;
+mod returns;
 mod spinning;
 
 use glam::DVec3;
@@ -20,6 +21,7 @@ pub use cone::Cone;
 pub use grid::{Grid, Spacing};
 pub use poses::{Mounting, TimedPose, TimedPoses};
 pub use presets::{GRID_PRESETS, SPINNING_PRESETS};
+pub use returns::{Keep, Returns};
 pub use spinning::{Channel, Spinning};
 
 use crate::error::{check_count, check_range};
@@ -42,6 +44,8 @@ pub struct PatternRays {
     pub times: Option<Vec<f64>>,
     /// Shares of a beam's power, one for each entry of the last dimension; `None` if rays are whole beams.
     pub weights: Option<Vec<f64>>,
+    /// Which returns of a beam are told, if rays are parts of beams; `None`: rays stand for themselves.
+    pub returns: Option<Returns>,
     /// Elevations of the channels of a spinning head, one for each entry of the second dimension, degrees.
     pub elevations_deg: Option<Vec<f64>>,
     /// Where the pattern's own frame stands in that of the rays.

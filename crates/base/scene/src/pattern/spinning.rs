@@ -121,6 +121,7 @@ impl Spinning {
             rays,
             times: Some(times),
             weights: None,
+            returns: None,
             elevations_deg: Some(self.channels.iter().map(|channel| channel.elevation_deg).collect()),
             mounting: Mounting::HERE,
         })

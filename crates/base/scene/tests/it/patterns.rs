@@ -153,6 +153,7 @@ fn a_cone_has_its_edge_at_half_its_divergence_and_weights_of_1() {
         rays: vec![CastRay::new(DVec3::ONE, direction)],
         times: Some(vec![0.25]),
         weights: None,
+        returns: None,
         elevations_deg: None,
         mounting: Mounting::HERE,
     };

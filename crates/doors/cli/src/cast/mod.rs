@@ -7,9 +7,9 @@ mod scans;
 use std::path::{Path, PathBuf};
 
 use raypencil::cast::{
-    Answers, BagForm, CastPage, CastSource, DecidedCounts, PageScan, Questions, RayArray, cast as answer,
-    cast_warnings, counts_text, ray_json, ray_text, rays_from_bytes, write_answers, write_cast_page,
-    write_scan_bag, write_set,
+    Answers, BagForm, BeamReturns, CastPage, CastSource, DecidedCounts, PageScan, Questions, RayArray,
+    cast as answer, cast_warnings, counts_text, ray_json, ray_text, rays_from_bytes, write_answers,
+    write_cast_page, write_scan_bag, write_set,
 };
 use raypencil::io::{
     FileError, FileFacts, FileFrame, FileUnits, Limits, LoadedRaySets, OutputFolder, PolygonFacts, RayScene,
@@ -109,6 +109,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
                 rays: &array.rays,
                 shape: &array.shape,
                 answers,
+                returns: None,
                 compared,
                 warnings,
                 summary: written.transpose()?,
@@ -121,6 +122,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
                 let answers = answer(mesh, set.set.rays(), sides, questions, &spinner);
                 let compared = Compared::of(command, mesh, set.set.rays(), sides, &spinner);
                 let warnings = cast_warnings(mesh, set.set.rays(), sides, Some(set), &answers);
+                let returns = BeamReturns::of(&answers, set);
                 spinner.stage(&format!("{}: writing", set.name));
                 // One set is written as rays of no set are; of several each has a folder of its own.
                 let folder: Option<PathBuf> =
@@ -140,6 +142,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
                     rays: set.set.rays(),
                     shape: &set.shape,
                     answers,
+                    returns,
                     compared,
                     warnings,
                     summary,
@@ -228,6 +231,7 @@ struct Answered<'a> {
     rays: &'a [CastRay],
     shape: &'a [u64],
     answers: Answers,
+    returns: Option<BeamReturns>,
     compared: Option<Compared<'a>>,
     warnings: Vec<Warning>,
     summary: Option<PathBuf>,
@@ -253,6 +257,9 @@ impl Answered<'_> {
         if let Some(name) = self.set {
             document["name"] = json!(name);
         }
+        if let Some(returns) = &self.returns {
+            document["returns"] = returns.json();
+        }
         if let Some(compared) = &self.compared {
             document["compared"] = compared.json();
         }
@@ -269,6 +276,9 @@ impl Answered<'_> {
         }
         let name = self.set.map(|name| format!("{name}: ")).unwrap_or_default();
         text += &format!("{name}{}\n", counts_text(&self.answers));
+        if let Some(returns) = &self.returns {
+            text += &format!("{name}{}\n", returns.text());
+        }
         if let Some(compared) = &self.compared {
             text += &format!("\n{}", compared.text(self.rays));
         }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::{DQuat, DVec3};
 use raypencil_cast::{Answers, BagFields, BagForm, Questions, cast, write_scan_bag};
-use raypencil_scene::pattern::{Mounting, Spinning, TimedPose, TimedPoses};
+use raypencil_scene::pattern::{Cone, Keep, Mounting, PatternRays, Returns, Spinning, TimedPose, TimedPoses};
 use raypencil_scene::{NamedRaySet, Pose, Sides, Silent, Triangles};
 
 /// CDR, little endian, after its first four bytes: each number stands at a multiple of its size.
@@ -257,4 +257,45 @@ fn poses_and_clock_are_told_in_the_order_of_time() {
     assert_eq!((cloud.stamp, cloud.size), (1_000_000_000, [1, 0]));
     let topics: Vec<&str> = messages.iter().map(|(topic, ..)| topic.as_str()).collect();
     assert_eq!(topics, ["/tf_static", "/clock", "/clock", "/points"]);
+}
+
+/// Three beams with a width, two firings, over a floor: two look down, one up.
+#[test]
+fn returns_of_a_beam_stand_side_by_side_behind_the_fields_of_the_driver() {
+    let corners = [[-50.0, -50.0, -2.0], [50.0, -50.0, -2.0], [50.0, 50.0, -2.0], [-50.0, 50.0, -2.0]];
+    let floor = Triangles::new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).expect("a floor");
+    let mut head = Spinning { steps: 2, ..Spinning::preset("vlp-16").expect("a preset") };
+    head.channels.truncate(3);
+    let cone = Cone { divergence_rad: 3e-3, rings: 1 };
+    let rays = cone.spread(&head.rays("rays").expect("rays"), "cone").expect("a cone");
+    let rays = PatternRays { returns: Some(Returns { keep: Keep::UpTo(2), separation_m: 1.0 }), ..rays };
+    let set = NamedRaySet::new("head", rays, Sides::Both).expect("a set");
+    let answers = cast(&floor, set.set.rays(), Sides::Both, Questions::default(), &Silent);
+    for (fields, size, step) in
+        [(BagFields::Velodyne, [2, 6], 38), (BagFields::Ouster, [3, 4], 64), (BagFields::Livox, [1, 4], 42)]
+    {
+        let (_, cloud) = written(&set, &answers, fields, false);
+        assert_eq!((cloud.size, cloud.step), (size, step), "{fields:?}");
+        for (cell, point) in cloud.points().enumerate() {
+            // Elevations are -15, 1 and -13 degrees. The floor is one surface: the second place is empty.
+            let (channel, firing, place) = match fields {
+                BagFields::Velodyne => ([0, 2, 1][cell % 6 / 2], cell / 6, cell % 2),
+                BagFields::Ouster => ([1, 2, 0][cell / 4], cell % 4 / 2, cell % 2),
+                BagFields::Livox => ([0, 2][cell % 2], cell / 2, 0),
+            };
+            let hit = answers.first[(firing * 3 + channel) * 7].hit().filter(|_| place == 0);
+            assert_near(cloud.place(point), hit.map_or(DVec3::NAN, |hit| hit.point));
+            let told = f64::from(u8::from(hit.is_some()));
+            assert_eq!(["return", "share"].map(|name| cloud.number(point, name)), [told; 2]);
+            assert_eq!(cloud.number(point, "returns"), f64::from(u8::from(channel != 1)));
+            assert_eq!(cloud.number(point, "share_missed"), f64::from(u8::from(channel == 1)));
+            let other = f64::from(u8::from(channel != 1 && place == 1));
+            assert_eq!(["share_other", "mixed"].map(|name| cloud.number(point, name)), [other, 0.0]);
+            if fields != BagFields::Livox {
+                let ring = [0.0, 2.0, 1.0][channel];
+                let ring = if fields == BagFields::Ouster { 2.0 - ring } else { ring };
+                assert_eq!(cloud.number(point, "ring"), ring);
+            }
+        }
+    }
 }

@@ -19,6 +19,7 @@ fn rings(shape: &[u64]) -> Vec<u16> {
         set: RaySet::new(rays, Sides::Both).expect("rays"),
         times: None,
         weights: None,
+        returns: None,
         elevations_deg: None,
         mounting: Mounting::HERE,
     };
@@ -42,7 +43,7 @@ struct Point {
 fn points_of(answers: &Answers, set: &NamedRaySet, frame: CloudFrame) -> (String, Vec<Point>) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("cloud.pcd");
-    write_pcd(&path, answers, set, frame).expect("a file");
+    write_pcd(&path, answers, (set, None), frame).expect("a file");
     let bytes = std::fs::read(path).expect("the file");
     let text = b"DATA binary\n";
     let start =

@@ -8,4 +8,5 @@ mod columns;
 mod lidar;
 mod packs;
 mod reported;
+mod returns;
 mod shortest_range;

@@ -32,6 +32,7 @@ fn a_head_has_a_row_for_each_channel_with_the_highest_on_top() {
         set: RaySet::new(vec![ray; 6], Sides::Both).unwrap(),
         times: None,
         weights: None,
+        returns: None,
         elevations_deg: Some(vec![-15.0, 15.0, 0.0]),
         mounting: Mounting::HERE,
     };

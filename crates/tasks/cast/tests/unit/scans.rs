@@ -64,7 +64,7 @@ fn each_scan_is_written_with_its_own_times() {
     let exact = ExactCast::new(&floor);
     let answers: Answers = cast_with(&exact, scan.set.rays(), Sides::Both, Questions::default(), &Silent);
     let alone = folder.path().join("alone.pcd");
-    write_pcd(&alone, &answers, &scan, CloudFrame::Sensor).unwrap();
+    write_pcd(&alone, &answers, (&scan, None), CloudFrame::Sensor).unwrap();
     let bytes = |path: &Path| std::fs::read(path).unwrap();
     assert_eq!(bytes(&alone), bytes(&folder.path().join("scans/000002.pcd")));
     assert!(answers.first.iter().any(|read| matches!(read, Reading::Miss)));

@@ -132,6 +132,7 @@ fn a_pattern_is_told_of_another_axis_and_another_unit() {
             rays,
             times: None,
             weights: None,
+            returns: None,
             elevations_deg: None,
             mounting: Mounting::HERE,
         };

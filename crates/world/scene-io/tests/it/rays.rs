@@ -4,6 +4,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use proptest::prelude::*;
+use raypencil_scene::pattern::{Keep, Returns};
 use raypencil_scene::{Pose, Sides};
 use raypencil_scene_io::{LoadedRaySets, ray_sets_from_text, read_ray_sets};
 
@@ -60,6 +61,7 @@ fn cones_and_moving_heads_are_read() {
                 divergence_mrad = 3, rings = 1 }\n";
     let set = one(text).unwrap().sets.remove(0);
     assert_eq!((&set.shape[..], set.weights.map(|weights| weights.len())), (&[2, 3, 7][..], Some(7)));
+    assert_eq!(set.returns, None);
     // The shortest range of a sensor is that of all its rays, and no start of them.
     let text =
         "cone = { of = { spinning = { preset = \"os1-64\", steps = 1 } }, divergence_mrad = 3, rings = 1 }\n";
@@ -73,6 +75,51 @@ fn cones_and_moving_heads_are_read() {
     let half = 0.5_f64.sqrt();
     assert!((ray.direction - DVec3::new(half, half, 0.0)).length() < 1e-15);
     assert_eq!(set.times, Some(vec![0.5]));
+}
+
+#[test]
+fn a_cone_says_which_of_its_returns_are_told() {
+    let read = |returns: &str| {
+        let cone =
+            "of = { grid = { columns = 3, rows = 2, width_deg = 60, height_deg = 30 } }, divergence_mrad = 3";
+        let text = format!("cone = {{ {cone}, returns = {{ {returns} }} }}\n");
+        one(&text).map(|mut loaded| loaded.sets.remove(0).returns)
+    };
+    for (word, keep) in [
+        ("\"first\"", Keep::First),
+        ("\"strongest\"", Keep::Strongest),
+        ("\"last\"", Keep::Last),
+        ("2", Keep::UpTo(2)),
+    ] {
+        let found = read(&format!("keep = {word}, separation_m = 0.4"));
+        assert_eq!(found, Ok(Some(Returns { keep, separation_m: 0.4 })));
+    }
+    let expected = "expected \"first\", \"strongest\", \"last\", or how many of the strongest returns";
+    for (returns, message) in [
+        ("separation_m = 1", format!("`rays 0.cone.returns.keep` is missing; {expected}")),
+        (
+            "keep = 2",
+            "`rays 0.cone.returns.separation_m` is missing; expected the gap between two returns in metres"
+                .into(),
+        ),
+        ("keep = 0, separation_m = 1", format!("`rays 0.cone.returns.keep` is 0; {expected}, 1 to 16")),
+        ("keep = 1.5, separation_m = 1", format!("`rays 0.cone.returns.keep` is 1.5; {expected}, 1 to 16")),
+        (
+            "keep = \"dual\", separation_m = 1",
+            format!("`rays 0.cone.returns.keep` is dual; {expected}, 1 to 16"),
+        ),
+        (
+            "keep = 2, separation_m = 0",
+            "`rays 0.cone.returns.separation_m` is 0; expected 1e-6 to 1000000 metres".into(),
+        ),
+        (
+            "keep = 2, separation_m = nan",
+            "`rays 0.cone.returns.separation_m` is NaN; expected 1e-6 to 1000000 metres".into(),
+        ),
+    ] {
+        let error = read(returns).unwrap_err();
+        assert!(error.starts_with("r.toml:3:") && error.contains(&message), "{error}");
+    }
 }
 
 #[test]

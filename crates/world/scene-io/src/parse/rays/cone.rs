@@ -3,9 +3,9 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use raypencil_scene::pattern::Cone;
+use raypencil_scene::pattern::{Cone, Keep, Returns};
 
-use crate::parse::key::Key;
+use crate::parse::key::{Key, Word};
 use crate::parse::rays::grid::GridKeys;
 use crate::parse::rays::spinning::SpinningKeys;
 use crate::parse::source::Source;
@@ -20,6 +20,14 @@ pub(crate) struct ConeKeys {
     of: Key<OfKeys>,
     divergence_mrad: Key<f64>,
     rings: Key<i64>,
+    returns: Key<ReturnsKeys>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ReturnsKeys {
+    keep: Key<Word>,
+    separation_m: Key<f64>,
 }
 
 #[derive(Deserialize)]
@@ -31,12 +39,12 @@ pub(super) struct OfKeys {
 }
 
 impl Source<'_> {
-    /// The cone, and the keys of the pattern whose rays it replaces.
+    /// The cone, which of its returns are told, and the keys of the pattern whose rays it replaces.
     pub(super) fn cone<'k>(
         &self,
         name: &str,
         table: &'k Spanned<ConeKeys>,
-    ) -> Result<(Cone, &'k Spanned<OfKeys>), SceneIoError> {
+    ) -> Result<(Cone, Option<Returns>, &'k Spanned<OfKeys>), SceneIoError> {
         let keys = table.get_ref();
         let missing = |key: &str, expected: &str| {
             self.error(table.span(), format!("`{name}.{key}` is missing; expected {expected}"))
@@ -53,6 +61,39 @@ impl Source<'_> {
         })?;
         self.integer(&keys.rings, &format!("{name}.rings"), &mut cone.rings, 1..=64, "")?;
         cone.validate(name).map_err(|error| self.refused(table.span(), &error))?;
-        Ok((cone, of))
+        let returns = keys.returns.as_ref().map(|returns| self.returns(&format!("{name}.returns"), returns));
+        Ok((cone, returns.transpose()?, of))
+    }
+
+    /// Which returns of a beam are told.
+    fn returns(&self, name: &str, table: &Spanned<ReturnsKeys>) -> Result<Returns, SceneIoError> {
+        let ReturnsKeys { keep, separation_m } = table.get_ref();
+        let expected = "\"first\", \"strongest\", \"last\", or how many of the strongest returns";
+        let Some(keep) = keep else {
+            return Err(self.error(table.span(), format!("`{name}.keep` is missing; expected {expected}")));
+        };
+        let Some(separation) = separation_m else {
+            let message =
+                format!("`{name}.separation_m` is missing; expected the gap between two returns in metres");
+            return Err(self.error(table.span(), message));
+        };
+        let word = keep.get_ref().0.as_str();
+        let kept = match word {
+            "first" => Keep::First,
+            "strongest" => Keep::Strongest,
+            "last" => Keep::Last,
+            _ => match word.parse().ok().filter(|most| (1..=Returns::MAX).contains(most)) {
+                Some(most) => Keep::UpTo(most),
+                None => {
+                    let message =
+                        format!("`{name}.keep` is {word}; expected {expected}, 1 to {}", Returns::MAX);
+                    return Err(self.error(keep.span(), message));
+                }
+            },
+        };
+        let separation_m = *separation.get_ref();
+        let key = format!("{name}.separation_m");
+        self.check(separation_m, separation.span(), &key, 1e-6..=1e6, "metres")?;
+        Ok(Returns { keep: kept, separation_m })
     }
 }

@@ -6,7 +6,7 @@ use toml::Spanned;
 
 use raypencil_files::{FileError, Limits, RayArray, bytes, rays_from_bytes, sha256};
 use raypencil_scene::SceneError;
-use raypencil_scene::pattern::{Cone, Grid, Mounting, PatternRays, Spinning};
+use raypencil_scene::pattern::{Cone, Grid, Mounting, PatternRays, Returns, Spinning};
 
 use crate::digest::NamedDigest;
 use crate::parse::key::Key;
@@ -28,7 +28,7 @@ pub(super) enum Pattern {
     File(RayArray),
     Spinning(Spinning),
     Grid(Grid),
-    Cone(Cone, Box<Pattern>),
+    Cone(Cone, Option<Returns>, Box<Pattern>),
 }
 
 impl Pattern {
@@ -38,7 +38,7 @@ impl Pattern {
             Self::File(array) => array.rays.len() as u64,
             Self::Spinning(head) => head.steps.saturating_mul(head.channels.len() as u64),
             Self::Grid(grid) => grid.columns.saturating_mul(grid.rows),
-            Self::Cone(cone, inner) => cone.count().saturating_mul(inner.count()),
+            Self::Cone(cone, _, inner) => cone.count().saturating_mul(inner.count()),
         }
     }
 
@@ -50,12 +50,16 @@ impl Pattern {
                 rays,
                 times: None,
                 weights: None,
+                returns: None,
                 elevations_deg: None,
                 mounting: Mounting::HERE,
             }),
             Self::Spinning(head) => head.rays(&format!("{name}.spinning")),
             Self::Grid(grid) => grid.rays(&format!("{name}.grid")),
-            Self::Cone(cone, inner) => cone.spread(&inner.rays(name)?, &format!("{name}.cone")),
+            Self::Cone(cone, returns, inner) => {
+                let rays = cone.spread(&inner.rays(name)?, &format!("{name}.cone"))?;
+                Ok(PatternRays { returns, ..rays })
+            }
         }
     }
 }
@@ -99,11 +103,11 @@ impl Source<'_> {
         }
         let Some(cone) = cone.and_then(Option::as_ref) else { unreachable!("one of the four is given") };
         let name = format!("{name}.cone");
-        let (cone, of) = self.cone(&name, cone)?;
+        let (cone, returns, of) = self.cone(&name, cone)?;
         let OfKeys { file, spinning, grid } = of.get_ref();
         let keys = PatternKeys { file, spinning, grid };
         let inner = self.pattern((&format!("{name}.of"), of.span()), keys, None, digests)?;
-        Ok(Pattern::Cone(cone, Box::new(inner)))
+        Ok(Pattern::Cone(cone, returns, Box::new(inner)))
     }
 
     /// The rays of an NPY or CSV file. Its path is relative to the TOML file.
