@@ -164,7 +164,8 @@ folder-faults *COMMANDS:
     cargo run --release -p raypencil-cli --features examples --example folder_faults -- {{ COMMANDS }}
 
 # Fuzzes a reader for SECONDS, starting from the malformed inputs: scene_toml, resolved_scene, glb, dem, exr, npy, pfm, stl,
-# obj, ply, manifest, candidate; from good files: terrain, campaign, camera_info; from nothing: cloud, rays, ray_sets, numbers. Needs a nightly
+# obj, ply, cloud, trajectory, bag_poses, manifest, candidate; from good files: terrain, campaign, camera_info; from nothing: rays, ray_sets,
+# numbers. Needs a nightly
 # compiler and cargo-fuzz (cargo install cargo-fuzz --locked); fuzz/README.md
 fuzz TARGET SECONDS:
     cargo run --release -p raypencil-tests --features examples --example malformed_inputs fuzz/corpus

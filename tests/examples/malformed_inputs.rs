@@ -36,6 +36,9 @@ fn target(path: &Path) -> Option<&'static str> {
     match (path.file_name()?.to_str()?, path.extension()?.to_str()?) {
         ("manifest.json", _) => Some("manifest"),
         ("candidate.json", _) => Some("candidate"),
+        ("my.pcd" | "my.ply", _) => Some("cloud"),
+        (_, "tum") => Some("trajectory"),
+        (_, "mcap") => Some("bag_poses"),
         (_, "glb" | "gltf") => Some("glb"),
         (_, "toml") => Some("scene_toml"),
         (_, "exr") => Some("exr"),

@@ -6,8 +6,8 @@
 //! output, no file written, little memory and time.
 //!
 //! * [`Case`]: one input. `bytes`: truncation, deflate streams.
-//! * `glb`, `gltf`, `tiff`, `mesh`: terrain. `exr`, `npy`, `pfm`: maps. `scene`, `drive`: scene files. `rays`: sets of rays. `manifest`, `candidate`:
-//!   packs and recordings.
+//! * `glb`, `gltf`, `tiff`, `mesh`: terrain. `exr`, `npy`, `pfm`: maps. `scene`, `drive`: scene files. `rays`: sets of rays. `trajectory`: poses of a
+//!   moving sensor. `cloud`: point clouds. `manifest`, `candidate`: packs and recordings.
 //! * [`hostile`]: good files with every place changed, by rule.
 //! * [`all`], [`tiffs`]: every case. [`good`]: well-formed files of the same formats. [`table`]: the page.
 //!
@@ -22,6 +22,7 @@
 pub mod bytes;
 mod candidate;
 mod case;
+mod cloud;
 mod drive;
 mod exr;
 mod glb;
@@ -34,6 +35,7 @@ mod pfm;
 mod rays;
 mod scene;
 mod tiff;
+mod trajectory;
 
 pub use case::{Case, Item};
 pub use tiff::tiffs;
@@ -49,6 +51,8 @@ pub fn all() -> Vec<Case> {
         pfm::cases(),
         scene::cases(),
         rays::cases(),
+        trajectory::cases(),
+        cloud::cases(),
         drive::cases(),
         manifest::cases(),
         candidate::cases(),

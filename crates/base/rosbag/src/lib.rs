@@ -1,5 +1,5 @@
 //! Bags of ROS 2: an MCAP file with the definitions of its messages, and the `metadata.yaml` of rosbag2 beside it.
-//! Nothing of ROS is needed to write them, and `ros2 bag`, RViz, Foxglove and Python read them.
+//! Nothing of ROS is needed to write them, and `ros2 bag`, RViz, Foxglove and Python read them. The poses of any program's bag are read.
 //!
 //! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
 //!
@@ -8,6 +8,7 @@
 //! definitions    their texts, which the bag carries along
 //! bag            the bag itself
 //! metadata       its metadata.yaml
+//! poses          read from the bags of any program: where a frame is
 //! ```
 //!
 //! ```
@@ -37,6 +38,7 @@ mod bag;
 mod definitions;
 mod messages;
 mod metadata;
+mod poses;
 
 pub use bag::{BagWriter, Topic};
 pub use messages::{
@@ -44,6 +46,7 @@ pub use messages::{
     PointCloud2, PointField, Pose, PoseWithCovariance, Quaternion, RegionOfInterest, Stamp, TfMessage,
     Transform, TransformStamped, Twist, TwistWithCovariance, Vector3,
 };
+pub use poses::{BagPose, BagPoses, PoseChoice, read_poses};
 
 // The tests by public items are in the program of the unit tests: one executable for the crate.
 #[cfg(test)]

@@ -15,8 +15,10 @@ use crate::answers::Answers;
 use crate::cloud::{Spot, SpotReturn, places, rings, spots};
 use crate::returns::BeamReturns;
 
-/// The frame of the mesh, and that of the sensor (REP-105 has `map`).
+/// The frame of the mesh, and that of the sensor (REP-105 has `map`). Where the mesh's origin is moved in its map, `map` is the
+/// map and the mesh's frame is `mesh`, fixed in it: numbers in `mesh` stay small, those of `map` may have seven digits.
 const MAP: &str = "map";
+const MESH: &str = "mesh";
 const SENSOR: &str = "lidar";
 
 /// Earliest time of a message, seconds: the time 0 means "no time" in ROS.
@@ -182,7 +184,8 @@ impl Places {
 }
 
 /// Writes a bag of ROS 2 (MCAP): `/points`, a `PointCloud2` of all rays in the sensor's own frame at the time of each, `lidar`; its poses
-/// in `map`, the frame of the mesh, as `/tf`, or `/tf_static` for one that stands still; and `/clock`.
+/// in `map`, the frame of the mesh, as `/tf`, or `/tf_static` for one that stands still; and `/clock`. If `origin`, where the mesh's frame lies in
+/// its map, is not 0, the frame of the mesh is `mesh`, and `/tf_static` has it in `map`.
 ///
 /// Times are those of the set, or later by as much as brings the first of them to 1 s. The cloud's header has the time of the
 /// first ray, and it is recorded at that of the last. Without order the points are in the order of the rays; with it, cells
@@ -198,8 +201,9 @@ pub fn write_scan_bag(
     answers: &Answers,
     set: &NamedRaySet,
     form: BagForm,
+    origin: [f64; 3],
 ) -> Result<(), FileError> {
-    let mut bag = ScanBag::create(folder, set, form)?;
+    let mut bag = ScanBag::create(folder, set, form, origin)?;
     bag.add(answers, set)?;
     bag.finish()
 }
@@ -210,6 +214,8 @@ pub(crate) struct ScanBag<'a> {
     bag: BagWriter,
     mounting: &'a Mounting,
     form: BagForm,
+    /// Name of the mesh's frame.
+    mesh_frame: &'static str,
     /// Seconds by which all times are later.
     later: f64,
     /// The last time at which something was told.
@@ -218,7 +224,12 @@ pub(crate) struct ScanBag<'a> {
 
 impl<'a> ScanBag<'a> {
     /// Begins a bag of the scans of a set.
-    pub(crate) fn create(folder: &'a Path, set: &'a NamedRaySet, form: BagForm) -> Result<Self, FileError> {
+    pub(crate) fn create(
+        folder: &'a Path,
+        set: &'a NamedRaySet,
+        form: BagForm,
+        origin: [f64; 3],
+    ) -> Result<Self, FileError> {
         let first = set.times.iter().flatten().copied().reduce(f64::min).unwrap_or(0.0);
         let begin = match &set.mounting {
             Mounting::Fixed(_) => first,
@@ -226,10 +237,18 @@ impl<'a> ScanBag<'a> {
         };
         let later = (FIRST_S - begin).max(0.0);
         let bag = BagWriter::create(folder)?;
-        let mut begun = Self { folder, bag, mounting: &set.mounting, form, later, told: f64::NEG_INFINITY };
+        let mesh_frame = if origin == [0.0; 3] { MAP } else { MESH };
+        let mut begun =
+            Self { folder, bag, mounting: &set.mounting, form, mesh_frame, later, told: f64::NEG_INFINITY };
+        let at = begun.at(begin);
+        let mut transforms = Vec::new();
+        if mesh_frame == MESH {
+            transforms.push(transform(at, [MAP, MESH], &Pose::from_position(origin.into())));
+        }
         if let Mounting::Fixed(pose) = &set.mounting {
-            let at = begun.at(first);
-            let transforms = vec![transform(at, pose)];
+            transforms.push(transform(at, [mesh_frame, SENSOR], pose));
+        }
+        if !transforms.is_empty() {
             begun.bag.write(&Topic::latched("/tf_static"), at, &TfMessage { transforms })?;
         }
         Ok(begun)
@@ -273,7 +292,7 @@ impl<'a> ScanBag<'a> {
             if let Mounting::Moving(poses) = self.mounting
                 && let Some(pose) = poses.at(tick)
             {
-                let transforms = vec![transform(at, &pose)];
+                let transforms = vec![transform(at, [self.mesh_frame, SENSOR], &pose)];
                 self.bag.write(&Topic::new("/tf"), at, &TfMessage { transforms })?;
             }
             self.told = tick;
@@ -288,11 +307,12 @@ impl<'a> ScanBag<'a> {
     }
 }
 
-fn transform(stamp: Stamp, pose: &Pose) -> TransformStamped {
+/// The pose of a frame in its parent, which stands first.
+fn transform(stamp: Stamp, [parent, child]: [&str; 2], pose: &Pose) -> TransformStamped {
     let rotation = pose.rotation.normalize();
     TransformStamped {
-        header: Header { stamp, frame_id: MAP.into() },
-        child_frame_id: SENSOR.into(),
+        header: Header { stamp, frame_id: parent.into() },
+        child_frame_id: child.into(),
         transform: Transform {
             translation: Vector3 { x: pose.position.x, y: pose.position.y, z: pose.position.z },
             rotation: Quaternion { x: rotation.x, y: rotation.y, z: rotation.z, w: rotation.w },

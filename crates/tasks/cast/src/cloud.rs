@@ -103,11 +103,38 @@ fn spot_of_return<'a>(answers: &'a Answers, returns: &BeamReturns, index: usize)
     }
 }
 
+/// The map in which the frame of a mesh lies. Its coordinates may have seven digits before the point, as many as single precision holds: so
+/// clouds stay in the mesh's frame, and name the map in their headers.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct CloudMap {
+    /// Where the origin of the mesh's frame lies, metres.
+    pub origin: [f64; 3],
+    /// The coordinate system of the map; `None` where there is no map.
+    pub system: Option<String>,
+}
+
+impl CloudMap {
+    /// Lines of comments, each after this word: none if the mesh's coordinates are those of its file.
+    fn comments(&self, word: &str) -> String {
+        let [x, y, z] = self.origin;
+        let system = match &self.system {
+            Some(system) => format!("{word} map_system {system}\n"),
+            None => String::new(),
+        };
+        match self.origin == [0.0; 3] {
+            true => system,
+            false => format!("{word} map_origin_m {x} {y} {z}\n{system}"),
+        }
+    }
+}
+
 /// Writes one point for each hit, in the order of the rays: PLY, binary, little endian, with the properties x, y, z
 /// (double), `face` (uint) and `cos_incidence` (double). (G. Turk, "The PLY polygon file format", 1994)
 ///
 /// With returns there is a point for each of them that is told, and further properties: `range`, `mean_range` and `strength` (double),
 /// `share`, `share_other` and `share_missed` (float), `return` and `returns` (ushort), `mixed` (uchar).
+///
+/// Comments `map_origin_m X Y Z` and `map_system NAME` name the map: what is to be added to each point, metres.
 ///
 /// # Errors
 /// The file cannot be written; the message names it.
@@ -115,7 +142,9 @@ pub fn write_ply(
     path: impl AsRef<Path>,
     answers: &Answers,
     returns: Option<&BeamReturns>,
+    map: &CloudMap,
 ) -> Result<(), FileError> {
+    let map = map.comments("comment");
     let of_returns = match returns {
         None => "",
         Some(_) => {
@@ -128,7 +157,8 @@ pub fn write_ply(
     write_atomically(path, |file| {
         write!(
             file,
-            "ply\nformat binary_little_endian 1.0\ncomment raypencil cast, frame of the mesh\nelement vertex {points}\n\
+            "ply\nformat binary_little_endian 1.0\ncomment raypencil cast, frame of the mesh\n{map}\
+             element vertex {points}\n\
              property double x\nproperty double y\nproperty double z\nproperty uint face\n\
              property double cos_incidence\n{of_returns}end_header\n",
         )?;
@@ -231,6 +261,8 @@ impl CloudFrame {
 /// number. `intensity` is then the light of the return, and after `face` there are `mean_range`, `share`, `share_other` and `share_missed`
 /// (float32), `return` and `returns` (uint16) and `mixed` (uint8).
 ///
+/// Comments `# map_origin_m X Y Z` and `# map_system NAME` name the map in which the mesh's frame lies.
+///
 /// VIEWPOINT has the pose of the sensor in the mesh's frame, its first one, if the points are in the sensor's frame: viewers that
 /// apply it show the cloud in its place. For points in the mesh's frame it is the identity.
 ///
@@ -241,7 +273,9 @@ pub fn write_pcd(
     answers: &Answers,
     (set, returns): (&NamedRaySet, Option<&BeamReturns>),
     frame: CloudFrame,
+    map: &CloudMap,
 ) -> Result<(), FileError> {
+    let map = map.comments("#");
     let spots = spots(answers, returns);
     let count = spots.len() as u64;
     let (shape, rays_of_place, places) = places(set, returns);
@@ -281,7 +315,7 @@ pub fn write_pcd(
     write_atomically(path, |file| {
         write!(
             file,
-            "# .PCD v0.7 - Point Cloud Data file format\n# raypencil cast, frame of {}\nVERSION 0.7\n\
+            "# .PCD v0.7 - Point Cloud Data file format\n# raypencil cast, frame of {}\n{map}VERSION 0.7\n\
              FIELDS x y z intensity ring time timestamp channel range face{more_fields}\n\
              SIZE 4 4 4 4 2 4 8 2 4 4{more_sizes}\nTYPE F F F F U F F U F U{more_types}\n\
              COUNT 1 1 1 1 1 1 1 1 1 1{more_counts}\n\

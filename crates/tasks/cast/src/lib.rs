@@ -58,7 +58,7 @@ pub use answers::{
     traced_beside_first,
 };
 pub use bag::{BagFields, BagForm, write_scan_bag};
-pub use cloud::{CloudFrame, write_pcd, write_ply};
+pub use cloud::{CloudFrame, CloudMap, write_pcd, write_ply};
 pub use columns::{Caster, ColumnsPart, FirstColumns, ReadingCounts, Values};
 pub use comparison::{
     CastCounts, CastValue, Comparison, RayVerdict, Stated, ValueTally, Wrong, compare, compare_with,

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use raypencil_files::{FileError, FolderError, begin_output_folder, create_dir_all, write_atomically};
+use raypencil_mesh_io::FileUnits;
 use raypencil_referee::ExactCast;
 use raypencil_report::{VERSION, counted};
 use raypencil_scene::pattern::{Mounting, TimedPose, TimedPoses};
@@ -63,7 +64,8 @@ pub fn write_scans(
         _ => CloudFrame::Sensor,
     };
     let folder_of_bag = folder.join("rosbag");
-    let mut bag = form.map(|form| ScanBag::create(&folder_of_bag, set, form)).transpose()?;
+    let mut bag = form.map(|form| ScanBag::create(&folder_of_bag, set, form, source.origin)).transpose()?;
+    let map = source.map();
     progress.stage(&format!("building a tree of {}", counted(mesh.faces().len() as u64, "face", "faces")));
     let exact = ExactCast::new(mesh);
     let mut written =
@@ -75,7 +77,7 @@ pub fn write_scans(
         progress.stage(&format!("scan {} of {}", index + 1, ranges.len()));
         let name = format!("scans/{index:06}.pcd");
         let returns = BeamReturns::of(&answers, &scan);
-        write_pcd(folder.join(&name), &answers, (&scan, returns.as_ref()), frame)?;
+        write_pcd(folder.join(&name), &answers, (&scan, returns.as_ref()), frame, &map)?;
         if let Some(bag) = &mut bag {
             bag.add(&answers, &scan)?;
         }
@@ -95,7 +97,13 @@ pub fn write_scans(
         "format": 1,
         "kind": "scans",
         "raypencilVersion": VERSION,
-        "mesh": { "file": source.mesh, "sha256": source.mesh_sha256, "faces": mesh.faces().len() },
+        "mesh": {
+            "file": source.mesh,
+            "sha256": source.mesh_sha256,
+            "faces": mesh.faces().len(),
+            "originM": source.origin,
+            "units": source.facts.units.as_ref().map(FileUnits::to_json),
+        },
         "rays": { "file": source.rays, "sha256": source.rays_sha256, "name": set.name, "count": written.rays },
         "sides": if sides == Sides::Both { "both" } else { "fronts" },
         "scans": { "count": written.scans, "sequences": sequences, "frame": frame.option() },

@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 use raypencil_files::{
     FileError, FolderError, RayArray, begin_output_folder, write_atomically, write_npy_numbers,
 };
-use raypencil_mesh_io::{FileFacts, FileFrame, FileUnits, UpAxis};
+use raypencil_mesh_io::{DemFacts, FileFacts, FileFrame, FileUnits, UpAxis};
 use raypencil_referee::Margin;
 use raypencil_report::VERSION;
 use raypencil_scene::{CastRay, NamedRaySet, Sides, Triangles};
 use serde_json::{Value, json};
 
 use crate::answers::{Answers, FirstHit, GroupAtT, side_number};
-use crate::cloud::{CloudFrame, write_pcd, write_ply};
+use crate::cloud::{CloudFrame, CloudMap, write_pcd, write_ply};
 use crate::range_picture::{range_picture, top_picture};
 use crate::returns::{BeamReturn, BeamReturns};
 use crate::warnings::cast_warnings;
@@ -32,6 +32,15 @@ pub struct CastSource {
     pub frame: FileFrame,
     /// What was found out about the mesh's file.
     pub facts: FileFacts,
+    /// Where the origin of the mesh's frame lies in the map of the mesh's file, metres: 0 where the coordinates are those of the file.
+    pub origin: [f64; 3],
+}
+
+impl CastSource {
+    /// The map in which the mesh's frame lies, as clouds name it.
+    pub fn map(&self) -> CloudMap {
+        CloudMap { origin: self.origin, system: self.facts.dem().map(DemFacts::map_name) }
+    }
 }
 
 /// What stands for no face.
@@ -102,10 +111,11 @@ pub fn write_set(
         write_returns(&mut more, returns, &set.shape)?;
         document["returns"] = returns.json();
     }
-    write_ply(folder.join("cloud.ply"), answers, returns.as_ref())?;
+    let map = source.map();
+    write_ply(folder.join("cloud.ply"), answers, returns.as_ref(), &map)?;
     let mut clouds = vec!["cloud.ply"];
     for frame in CloudFrame::of(&set.mounting) {
-        write_pcd(folder.join(frame.file()), answers, (set, returns.as_ref()), *frame)?;
+        write_pcd(folder.join(frame.file()), answers, (set, returns.as_ref()), *frame, &map)?;
         clouds.push(frame.file());
     }
     let mut pictures = Vec::new();
@@ -180,6 +190,7 @@ fn write_arrays(
             "zeroAreaFaces": mesh.zero_area_faces(),
             "up": source.frame.up.map(UpAxis::word),
             "scale": source.frame.scale,
+            "originM": source.origin,
             "units": source.facts.units.as_ref().map(FileUnits::to_json),
             "polygons": source.facts.polygons,
         },

@@ -103,6 +103,7 @@ pub(crate) fn source_of(subject: &Subject, set: &NamedRaySet) -> CastSource {
         mesh: format!("the terrain of {}, in the scene frame", subject.name),
         mesh_sha256: vec![scene_sha256(&subject.scene)],
         rays: format!("rays {} of {}", set.name, subject.name),
+        origin: subject.scene.mesh().origin().to_array(),
         ..CastSource::default()
     }
 }

@@ -84,13 +84,14 @@ pub use overrides::Overrides;
 pub use ray_scene::{RayScene, load_ray_scene};
 pub use ray_sets::{LoadedRaySets, ray_sets_from_text, read_ray_sets};
 pub use raypencil_files::quoted;
+pub use raypencil_rosbag::PoseChoice;
 pub use resolved::write::write_resolved;
 pub use scene_error::SceneIoError;
 pub use scene_source::{MESH_ENDINGS, SceneSource};
 pub use settings::{Setting, refuse_contradictions};
 pub use subject::{Subject, probe_command};
 pub use toml_problem::TomlProblem;
-pub use trajectory::{MAX_TRAJECTORY_BYTES, poses_from_text};
+pub use trajectory::{MAX_TRAJECTORY_BYTES, poses_from_bag, poses_from_text};
 
 /// The README's example, compiled.
 #[cfg(doctest)]

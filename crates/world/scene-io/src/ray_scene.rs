@@ -28,6 +28,9 @@ pub struct RayScene {
     /// which axis is up or has a scale; any other, which has `f32`
     /// offsets from the start, is in the scene frame.
     pub triangles: Triangles,
+    /// Where the origin of the terrain's frame lies in the global frame, which is the map of an elevation model, metres: 0 where
+    /// coordinates are those of the file.
+    pub origin: [f64; 3],
     /// The sets, in the frame of the terrain: at least one.
     pub sets: Vec<NamedRaySet>,
     /// SHA-256 of the terrain's files, or of its numbers if it has none.
@@ -72,7 +75,7 @@ pub fn load_ray_scene(path: &Path, settings: &[Setting]) -> Result<RayScene, Sce
         return Err(file.error(0..0, "there is no table `[[rays]]`; expected at least one"));
     }
     let unfit = |error: SceneError| SceneIoError::scene(path.display().to_string(), error);
-    let (triangles, vehicle, terrain_digests, file_facts) = match &plan.terrain {
+    let (triangles, origin, vehicle, terrain_digests, file_facts) = match &plan.terrain {
         Terrain::File(MeshPart { file: terrain, frame }) => {
             let terrain = terrain_file(&file, "file", &MESH_ENDINGS, terrain, &plan.terrain_span)?;
             let read = read_triangles(&terrain)?;
@@ -86,7 +89,7 @@ pub fn load_ray_scene(path: &Path, settings: &[Setting]) -> Result<RayScene, Sce
             let vehicle = stood(&file, &plan, &ground.map_err(unfit)?)?;
             let is_gltf = read.is_gltf;
             let units = Some(FileUnits::Mesh { is_gltf, frame: *frame });
-            (triangles, vehicle, read.digests, FileFacts { units, polygons: read.polygon_facts })
+            (triangles, [0.0; 3], vehicle, read.digests, FileFacts { units, polygons: read.polygon_facts })
         }
         _ => {
             let TerrainFile { mesh, digests, facts } = match read_ground(&file, &plan)? {
@@ -99,14 +102,14 @@ pub fn load_ray_scene(path: &Path, settings: &[Setting]) -> Result<RayScene, Sce
             };
             let global = stood(&file, &plan, &mesh)?;
             let vehicle = Pose { position: global.position - mesh.origin(), ..global };
-            (Triangles::from(&mesh), vehicle, digests, facts)
+            (Triangles::from(&mesh), mesh.origin().to_array(), vehicle, digests, facts)
         }
     };
     let sets = plan.ray_sets.iter().map(|set| set.placed(&vehicle));
     let sets: Vec<NamedRaySet> = sets.collect::<Result<_, _>>().map_err(unfit)?;
     let of_sets = plan.ray_digests.iter().map(|(_, digest)| *digest);
     let parts: Vec<Sha256Digest> = std::iter::once(sha256(file.text.as_bytes())).chain(of_sets).collect();
-    Ok(RayScene { triangles, sets, terrain_digests, file_facts, sha256: combined_sha256_hex(&parts) })
+    Ok(RayScene { triangles, origin, sets, terrain_digests, file_facts, sha256: combined_sha256_hex(&parts) })
 }
 
 /// The vehicle's pose in the global frame.

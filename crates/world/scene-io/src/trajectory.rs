@@ -1,10 +1,13 @@
-//! Poses with their times from files of other programs: the format of the TUM RGB-D benchmark, and CSV.
+//! Poses with their times from files of other programs: the format of the TUM RGB-D benchmark, CSV, and bags of ROS 2.
 
+use std::fs::File;
+use std::io::{BufReader, Read};
 use std::ops::RangeInclusive;
 use std::path::Path;
 
 use glam::{DQuat, DVec3};
-use raypencil_files::{Fault, FileError, bytes};
+use raypencil_files::{Fault, FileError, Sha256Digest, bytes, file_sha256, sha256};
+use raypencil_rosbag::{BagPose, PoseChoice, read_poses};
 use raypencil_scene::Pose;
 use raypencil_scene::pattern::TimedPose;
 
@@ -47,8 +50,50 @@ pub fn poses_from_text(text: &str, file: &Path) -> Result<Vec<TimedPose>, FileEr
     read(text).map_err(|fault| FileError::Array(fault.in_file(file)))
 }
 
-/// Reads the bytes of a file of poses, for its digest, too.
-pub(crate) fn read_trajectory(file: &Path) -> Result<(Vec<TimedPose>, Vec<u8>), FileError> {
+/// Reads the poses of a bag of ROS 2, the bytes of an MCAP file: those of `nav_msgs/Odometry`, `geometry_msgs/PoseStamped` or
+/// `tf2_msgs/TFMessage`, of one topic and one pair of frames. Their times are those of the stamps.
+///
+/// # Errors
+/// Names the message: as for [`poses_from_text`]. What is no MCAP file, or has no such messages or several series of them.
+pub fn poses_from_bag(
+    bytes: &[u8],
+    choice: &PoseChoice<'_>,
+    file: &Path,
+) -> Result<Vec<TimedPose>, FileError> {
+    of_bag(bytes, bytes.len() as u64, choice).map_err(|fault| FileError::Array(fault.in_file(file)))
+}
+
+fn of_bag(stream: impl Read, length: u64, choice: &PoseChoice<'_>) -> Result<Vec<TimedPose>, Fault> {
+    let found = read_poses(stream, length, choice)?;
+    let mut poses: Vec<TimedPose> = Vec::with_capacity(found.poses.len());
+    for BagPose { message, time_s, position: [x, y, z], rotation: [qx, qy, qz, qw] } in found.poses {
+        let row = [time_s, x, y, z, qx, qy, qz, qw];
+        let refused =
+            |(was, expected)| Fault::new(format!("message {message} of {}", found.topic), was, expected);
+        poses.push(checked(row, poses.last()).map_err(refused)?);
+    }
+    Ok(poses)
+}
+
+/// Whether a file of poses is a bag, by its ending.
+pub(crate) fn is_bag(file: &Path) -> bool {
+    file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap"))
+}
+
+/// Reads a file of poses, and its digest. A bag is read piece by piece, and may have any size.
+pub(crate) fn read_trajectory(
+    file: &Path,
+    choice: &PoseChoice<'_>,
+) -> Result<(Vec<TimedPose>, Sha256Digest), FileError> {
+    if is_bag(file) {
+        let failed = |error| FileError::io(file, "read", error);
+        let stream = File::open(file).map_err(failed)?;
+        let length = stream.metadata().map_err(failed)?.len();
+        let poses = of_bag(BufReader::new(stream), length, choice);
+        let poses = poses.map_err(|fault| FileError::Array(fault.in_file(file)))?;
+        let (_, digest) = file_sha256(file).map_err(failed)?;
+        return Ok((poses, digest));
+    }
     let bytes =
         bytes::read_file(file, MAX_TRAJECTORY_BYTES).map_err(|error| FileError::io(file, "read", error))?;
     let text = std::str::from_utf8(&bytes).map_err(|error| {
@@ -56,7 +101,7 @@ pub(crate) fn read_trajectory(file: &Path) -> Result<(Vec<TimedPose>, Vec<u8>), 
         FileError::Array(Fault::new(place, "bytes that are no text", ORDER).in_file(file))
     })?;
     let poses = poses_from_text(text, file)?;
-    Ok((poses, bytes))
+    Ok((poses, sha256(&bytes)))
 }
 
 fn read(text: &str) -> Result<Vec<TimedPose>, Fault> {
@@ -87,29 +132,37 @@ fn read(text: &str) -> Result<Vec<TimedPose>, Fault> {
                 _ => return refuse(format!("field {}: {field:?}", column + 1), "a finite number".into()),
             };
         }
-        let [time_s, x, y, z, qx, qy, qz, qw] = row;
-        if !TIME_S.contains(&time_s) {
-            return refuse(format!("a time of {time_s}"), format!("-1e12 to 1e12 seconds, as {ORDER}"));
+        match checked(row, poses.last()) {
+            Ok(pose) => poses.push(pose),
+            Err((found, expected)) => return refuse(found, expected),
         }
-        if let Some(before) = poses.last().filter(|before| time_s <= before.time_s) {
-            let expected = format!("more than {} seconds, the time before it", before.time_s);
-            return refuse(format!("a time of {time_s}"), expected);
-        }
-        if let Some(far) = [x, y, z].into_iter().find(|coordinate| !POSITION_M.contains(coordinate)) {
-            return refuse(format!("a coordinate of {far}"), "-1e12 to 1e12 metres".into());
-        }
-        let rotation = DQuat::from_xyzw(qx, qy, qz, qw);
-        let length = rotation.length();
-        if !((length - 1.0).abs() <= MAX_LENGTH_ERROR) {
-            let found = format!("a quaternion of length {length}");
-            return refuse(found, format!("1 to within {MAX_LENGTH_ERROR}, which rounding leaves: {ORDER}"));
-        }
-        poses.push(TimedPose { time_s, pose: Pose { position: DVec3::new(x, y, z), rotation } });
     }
     if poses.is_empty() {
         return Err(Fault::new("file", "no pose", format!("rows of {ORDER}")));
     }
     Ok(poses)
+}
+
+/// A pose of eight numbers after the pose `before`; what is wrong with it, and what is expected.
+fn checked(row: [f64; 8], before: Option<&TimedPose>) -> Result<TimedPose, (String, String)> {
+    let [time_s, x, y, z, qx, qy, qz, qw] = row;
+    if !TIME_S.contains(&time_s) {
+        return Err((format!("a time of {time_s}"), format!("-1e12 to 1e12 seconds, as {ORDER}")));
+    }
+    if let Some(before) = before.filter(|before| time_s <= before.time_s) {
+        let expected = format!("more than {} seconds, the time before it", before.time_s);
+        return Err((format!("a time of {time_s}"), expected));
+    }
+    if let Some(far) = [x, y, z].into_iter().find(|coordinate| !POSITION_M.contains(coordinate)) {
+        return Err((format!("a coordinate of {far}"), "-1e12 to 1e12 metres".into()));
+    }
+    let rotation = DQuat::from_xyzw(qx, qy, qz, qw);
+    let length = rotation.length();
+    if !((length - 1.0).abs() <= MAX_LENGTH_ERROR) {
+        let found = format!("a quaternion of length {length}");
+        return Err((found, format!("1 to within {MAX_LENGTH_ERROR}, which rounding leaves: {ORDER}")));
+    }
+    Ok(TimedPose { time_s, pose: Pose { position: DVec3::new(x, y, z), rotation } })
 }
 
 /// The fields of a row: between commas, if there is one, else between blanks.

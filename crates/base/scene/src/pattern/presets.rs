@@ -68,6 +68,11 @@ impl Spinning {
             _ => None,
         }
     }
+
+    /// Whether the head of this preset fires at its own pace, at whatever rate it turns: those of Velodyne do.
+    pub fn fires_at_its_own_pace(name: &str) -> bool {
+        matches!(name, "vlp-16" | "hdl-64e")
+    }
 }
 
 impl Grid {

@@ -42,7 +42,8 @@ enum Rays {
 pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
     let spinner = Spinner::new();
     spinner.stage(&format!("{}: loading", command.mesh.display()));
-    let Given { mesh, mesh_sha256, rays, from, rays_sha256, frame, facts } = given(command, &spinner)?;
+    let Given { mesh, origin, mesh_sha256, rays, from, rays_sha256, frame, facts } =
+        given(command, &spinner)?;
     let questions = Questions { any: command.any, all: command.all, margins: command.margins };
     let source = CastSource {
         mesh: command.mesh.display().to_string(),
@@ -51,6 +52,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
         rays_sha256,
         frame,
         facts,
+        origin,
     };
     let mesh = &mesh;
     let count = match &rays {
@@ -132,7 +134,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
                     write_page(folder, command, &source, of_set, sides, &answers, &compared)?;
                     if let Some(fields) = command.bag {
                         let form = BagForm { fields, is_dense: command.bag_dense };
-                        write_scan_bag(&folder.join("rosbag"), &answers, set, form)?;
+                        write_scan_bag(&folder.join("rosbag"), &answers, set, form, source.origin)?;
                     }
                 }
                 let written = folder.map(|folder| write_set(&folder, &answers, (mesh, set, sides), &source));
@@ -298,6 +300,8 @@ impl Answered<'_> {
 /// Mesh and rays, and where they come from.
 struct Given {
     mesh: Triangles,
+    /// Where the origin of the mesh's frame lies in its map.
+    origin: [f64; 3],
     mesh_sha256: Vec<String>,
     rays: Rays,
     /// The rays' file, or what else they come from.
@@ -312,19 +316,20 @@ fn given(command: &Cast, spinner: &Spinner) -> Result<Given, Trouble> {
     let name = command.mesh.display().to_string();
     let has_rays = command.rays.is_some() || !command.ray.is_empty();
     let frame = file_frame(command.up, command.scale)?;
-    let (mesh, digests, facts) = match is_toml(&command.mesh) {
+    let (mesh, origin, digests, facts) = match is_toml(&command.mesh) {
         true if frame != FileFrame::default() => {
             let text = "--up and --scale are for a mesh; a scene file has them in [terrain] (--set terrain.scale=0.001)";
             return Err(Trouble::Usage(format!("{name}: {text}")));
         }
         true => {
-            let RayScene { triangles, sets, terrain_digests, file_facts, sha256 } =
+            let RayScene { triangles, origin, sets, terrain_digests, file_facts, sha256 } =
                 load_ray_scene(&command.mesh, &command.set)?;
             if !has_rays {
                 let mesh_sha256 = terrain_digests.iter().map(hex_digits).collect();
                 let (rays, rays_sha256) = (Rays::Sets(sets), Some(sha256));
                 return Ok(Given {
                     mesh: triangles,
+                    origin,
                     mesh_sha256,
                     rays,
                     from: name,
@@ -333,7 +338,7 @@ fn given(command: &Cast, spinner: &Spinner) -> Result<Given, Trouble> {
                     facts: file_facts,
                 });
             }
-            (triangles, terrain_digests, file_facts)
+            (triangles, origin, terrain_digests, file_facts)
         }
         false if !command.set.is_empty() => {
             let text = "--set changes a scene file; expected a MESH that ends in .toml, or no --set";
@@ -349,7 +354,7 @@ fn given(command: &Cast, spinner: &Spinner) -> Result<Given, Trouble> {
             let too_large = |source| FileError::Scene { origin: name.clone(), source };
             let units = Some(FileUnits::Mesh { is_gltf: read.is_gltf, frame });
             let facts = FileFacts { units, polygons: read.polygon_facts };
-            (frame.triangles(read.triangles).map_err(too_large)?, read.digests, facts)
+            (frame.triangles(read.triangles).map_err(too_large)?, [0.0; 3], read.digests, facts)
         }
     };
     let mesh_sha256 = digests.iter().map(hex_digits).collect();
@@ -364,7 +369,7 @@ fn given(command: &Cast, spinner: &Spinner) -> Result<Given, Trouble> {
             (rays, path.display().to_string(), Some(digest))
         }
     };
-    Ok(Given { mesh, mesh_sha256, rays, from, rays_sha256, frame, facts })
+    Ok(Given { mesh, origin, mesh_sha256, rays, from, rays_sha256, frame, facts })
 }
 
 fn is_toml(path: &Path) -> bool {

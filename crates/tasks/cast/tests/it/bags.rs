@@ -136,7 +136,7 @@ fn written(
 ) -> (Vec<(String, u64, Vec<u8>)>, Cloud) {
     let folder = tempfile::tempdir().expect("a folder");
     let bag = folder.path().join("rosbag");
-    write_scan_bag(&bag, answers, set, BagForm { fields, is_dense }).expect("a bag");
+    write_scan_bag(&bag, answers, set, BagForm { fields, is_dense }, [0.0; 3]).expect("a bag");
     let messages = messages(&bag);
     let cloud = messages.iter().find(|(topic, ..)| topic == "/points").expect("a cloud");
     let cloud = Cloud::read(&cloud.2);
@@ -297,5 +297,41 @@ fn returns_of_a_beam_stand_side_by_side_behind_the_fields_of_the_driver() {
                 assert_eq!(cloud.number(point, "ring"), ring);
             }
         }
+    }
+}
+
+/// Of a mesh whose frame is moved in its map, `map` is the map, in double precision, and the numbers of clouds stay small.
+#[test]
+fn a_mesh_in_a_map_has_its_origin_as_a_fixed_transform() {
+    let (set, answers) = scan();
+    let form = BagForm { fields: BagFields::Velodyne, is_dense: false };
+    let still = NamedRaySet { mounting: Mounting::HERE, ..set.clone() };
+    for set in [&set, &still] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let bag = folder.path().join("rosbag");
+        write_scan_bag(&bag, &answers, set, form, [491_000.0, 5_540_123.0, 212.0]).expect("a bag");
+        let messages = messages(&bag);
+        let (topic, time, data) = &messages[0];
+        let mut cdr = Cdr { data: &data[4..], at: 0 };
+        let count = cdr.word();
+        assert_eq!(
+            (topic.as_str(), count),
+            ("/tf_static", if set.mounting == Mounting::HERE { 2 } else { 1 })
+        );
+        assert_eq!((cdr.stamp(), cdr.text(), cdr.text()), (*time, "map".into(), "mesh".into()));
+        assert_eq!([0; 7].map(|_| cdr.real()), [491_000.0, 5_540_123.0, 212.0, 0.0, 0.0, 0.0, 1.0]);
+        // The sensor stands in the frame of the mesh, wherever it is told.
+        if count == 2 {
+            assert_eq!((cdr.stamp(), cdr.text(), cdr.text()), (*time, "mesh".into(), "lidar".into()));
+        }
+        for (_, time, data) in messages.iter().filter(|(topic, ..)| topic == "/tf") {
+            let mut cdr = Cdr { data: &data[4..], at: 0 };
+            assert_eq!(
+                (cdr.word(), cdr.stamp(), cdr.text(), cdr.text()),
+                (1, *time, "mesh".into(), "lidar".into())
+            );
+            assert!(cdr.real() < 6.0);
+        }
+        assert!(messages.iter().all(|(_, at, _)| at >= time));
     }
 }

@@ -1,7 +1,7 @@
 //! Point clouds, byte by byte.
 
 use glam::DVec3;
-use raypencil_cast::{Answers, CloudFrame, Questions, cast, write_pcd};
+use raypencil_cast::{Answers, CloudFrame, CloudMap, Questions, cast, write_pcd, write_ply};
 use raypencil_scene::pattern::{Mounting, Spinning, TimedPose, TimedPoses};
 use raypencil_scene::{CastRay, NamedRaySet, Pose, RaySet, Sides, Silent, Triangles};
 
@@ -43,7 +43,7 @@ struct Point {
 fn points_of(answers: &Answers, set: &NamedRaySet, frame: CloudFrame) -> (String, Vec<Point>) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("cloud.pcd");
-    write_pcd(&path, answers, (set, None), frame).expect("a file");
+    write_pcd(&path, answers, (set, None), frame, &CloudMap::default()).expect("a file");
     let bytes = std::fs::read(path).expect("the file");
     let text = b"DATA binary\n";
     let start =
@@ -167,4 +167,48 @@ fn a_moving_head_distorts_its_own_cloud_and_not_that_of_its_start() {
     let vehicle = Pose::from_position(DVec3::new(0.0, 7.0, 0.0));
     let placed = set.placed(&vehicle).expect("rays");
     assert_eq!(placed.mounting.at(100.5).map(|pose| pose.position), Some(DVec3::new(5.0, 7.0, 1.0)));
+}
+
+#[test]
+fn headers_name_the_map_in_which_the_mesh_lies() {
+    let mesh = Triangles::new(vec![[-9.0, -9.0, 0.0], [9.0, -9.0, 0.0], [0.0, 9.0, 0.0]], vec![[0, 1, 2]])
+        .expect("a plate");
+    let rays = vec![CastRay::new(DVec3::Z, DVec3::NEG_Z)];
+    let answers = cast(&mesh, &rays, Sides::Both, Questions::default(), &Silent);
+    let set = NamedRaySet {
+        name: "rays".into(),
+        shape: vec![1],
+        set: RaySet::new(rays, Sides::Both).expect("rays"),
+        times: None,
+        weights: None,
+        returns: None,
+        elevations_deg: None,
+        mounting: Mounting::HERE,
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let header = |map: &CloudMap| {
+        let [ply, pcd] = ["c.ply", "c.pcd"].map(|name| folder.path().join(name));
+        write_ply(&ply, &answers, None, map).expect("a file");
+        write_pcd(&pcd, &answers, (&set, None), CloudFrame::Mesh, map).expect("a file");
+        [ply, pcd].map(|path| String::from_utf8_lossy(&std::fs::read(path).expect("the file")).into_owned())
+    };
+    assert!(header(&CloudMap::default()).iter().all(|text| !text.contains("map_")));
+    let map = CloudMap {
+        origin: [491_000.0, 5_540_123.0, 212.5],
+        system: Some("WGS 84 / UTM zone 33N (EPSG:32633)".into()),
+    };
+    let [ply, pcd] = header(&map);
+    let lines = |word: &str| {
+        format!(
+            "{word} map_origin_m 491000 5540123 212.5\n{word} map_system WGS 84 / UTM zone 33N (EPSG:32633)\n"
+        )
+    };
+    assert!(ply.starts_with(&format!(
+        "ply\nformat binary_little_endian 1.0\ncomment raypencil cast, frame of the mesh\n{}element vertex 1\n",
+        lines("comment")
+    )), "{ply}");
+    assert!(
+        pcd.contains(&format!("\n# raypencil cast, frame of the mesh\n{}VERSION 0.7\n", lines("#"))),
+        "{pcd}"
+    );
 }

@@ -3,6 +3,7 @@ use raypencil_scene::{Reading, Silent};
 
 use super::*;
 use crate::answers::Answers;
+use crate::cloud::CloudMap;
 
 /// A VLP-16 that drives along x for half a second, with a pose every tenth, over a floor: twelve sequences in three scans.
 fn drive() -> (Triangles, NamedRaySet) {
@@ -64,7 +65,7 @@ fn each_scan_is_written_with_its_own_times() {
     let exact = ExactCast::new(&floor);
     let answers: Answers = cast_with(&exact, scan.set.rays(), Sides::Both, Questions::default(), &Silent);
     let alone = folder.path().join("alone.pcd");
-    write_pcd(&alone, &answers, (&scan, None), CloudFrame::Sensor).unwrap();
+    write_pcd(&alone, &answers, (&scan, None), CloudFrame::Sensor, &CloudMap::default()).unwrap();
     let bytes = |path: &Path| std::fs::read(path).unwrap();
     assert_eq!(bytes(&alone), bytes(&folder.path().join("scans/000002.pcd")));
     assert!(answers.first.iter().any(|read| matches!(read, Reading::Miss)));

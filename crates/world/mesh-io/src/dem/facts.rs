@@ -106,6 +106,11 @@ impl DemFacts {
         lines
     }
 
+    /// Name of the coordinate system of x and y.
+    pub fn map_name(&self) -> String {
+        name(&self.map)
+    }
+
     /// The systems and units in one line.
     pub fn words(&self) -> String {
         format!(

@@ -6,7 +6,7 @@ use glam::DVec3;
 use proptest::prelude::*;
 use raypencil_scene::pattern::{Keep, Returns};
 use raypencil_scene::{Pose, Sides};
-use raypencil_scene_io::{LoadedRaySets, ray_sets_from_text, read_ray_sets};
+use raypencil_scene_io::{LoadedRaySets, PoseChoice, poses_from_bag, ray_sets_from_text, read_ray_sets};
 
 fn read(text: &str) -> Result<LoadedRaySets, String> {
     ray_sets_from_text(text, "r.toml".as_ref()).map_err(|error| error.to_string())
@@ -31,6 +31,24 @@ fn a_preset_is_mounted_as_a_camera_is() {
     assert_eq!(ray.t_max, 100.0);
     let times = set.times.unwrap();
     assert_eq!((times[0], times[1]), (5.0, 5.0 + 2.304e-6));
+}
+
+/// A Velodyne fires at its own pace: another step of the azimuth is another rate.
+#[test]
+fn a_preset_keeps_its_period() {
+    let times =
+        |lines: &str| one(&format!("spinning = {{ {lines} }}\n")).unwrap().sets.remove(0).times.unwrap();
+    for (lines, period) in [
+        ("preset = \"vlp-16\", steps = 3, azimuth_step_deg = -0.4", 55.296e-6),
+        ("preset = \"vlp-16\", steps = 3, azimuth_step_deg = -0.3981312, rate_hz = 20", 55.296e-6),
+        ("preset = \"hdl-64e\", steps = 3, azimuth_end_deg = -1", 48e-6),
+        // Ouster divides a turn into columns: 512 of them, at 10 Hz.
+        ("preset = \"os1-64\", steps = 512, azimuth_step_deg = -0.703125", 0.1 / 512.0),
+    ] {
+        let times = times(lines);
+        let channels = if lines.contains("vlp") { 16 } else { 64 };
+        assert!((times[2 * channels] - 2.0 * period).abs() < 1e-18, "{lines}: {}", times[2 * channels]);
+    }
 }
 
 #[test]
@@ -191,6 +209,15 @@ fn what_is_no_ray_set_is_refused_with_its_place() {
         (
             "spinning = { preset = \"vlp-16\", azimuth_step_deg = 0 }",
             "r.toml:3:12: `rays 0.spinning`: the step of the azimuth is 0; expected a step to the left or to the right",
+        ),
+        (
+            "spinning = { preset = \"vlp-16\", azimuth_step_deg = -0.4, rate_hz = 10 }",
+            "r.toml:3:12: `rays 0.spinning`: a step of 0.4 degrees at 10 turns a second; expected 0.1990656, for the preset has a firing \
+             sequence every 55.296 µs",
+        ),
+        (
+            "spinning = { preset = \"vlp-16\", azimuth_step_deg = 30 }",
+            "r.toml:3:12: `rays 0.spinning`: a step of 30 degrees every 55.296 µs is 1507 turns a second; expected 0.001 to 1000",
         ),
         (
             "spinning = { preset = \"vlp-16\", azimuth_end_deg = 90 }",
@@ -446,4 +473,81 @@ fn rays_of_a_file_are_fired_at_times_of_their_own() {
     assert!(refused("file = \"rays.csv\"\ntimes_file = \"no.npy\"\n").contains("there is no file"));
     let pattern = refused("spinning = { preset = \"vlp-16\" }\ntimes_file = \"t.npy\"\n");
     assert!(pattern.contains("`rays 0.times_file` without `file`"), "{pattern}");
+}
+
+/// A bag of `rosbags`, with poses of three topics: 1.7e9 s + 0.25 s k, k metres along x, turned by 60 k degrees.
+#[test]
+fn poses_of_a_bag_are_those_of_its_messages() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::write(path("walk.mcap"), include_bytes!("../../../../base/rosbag/tests/data/poses-zstd.mcap"))
+        .unwrap();
+    std::fs::write(path("w.tum"), "10 0 0 5 0 0 0 1\n").unwrap();
+    let read = |lines: &str| {
+        let lines = lines.replace("BAG", "poses_file = \"walk.mcap\"");
+        let text =
+            format!("[[rays]]\nname = \"a\"\ngrid = {{ preset = \"l515\", columns = 1, rows = 1 }}\n{lines}");
+        ray_sets_from_text(&text, &path("r.toml")).map_err(|error| error.to_string())
+    };
+    let chosen =
+        ["poses_topic = \"/odom\"", "poses_topic = \"/pose\"", "poses_frames = [\"map\", \"lidar\"]"];
+    for choice in chosen {
+        let loaded = read(&format!("start_s = 1700000000.125\nBAG\n{choice}\n")).unwrap();
+        let ray = loaded.sets[0].set.rays()[0];
+        // Half-way from the first pose to the second.
+        assert_eq!(ray.origin, DVec3::new(0.5, -0.25, 1.5), "{choice}");
+        let (sin, cos) = 30_f64.to_radians().sin_cos();
+        assert!((ray.direction - DVec3::new(cos, sin, 0.0)).length() < 1e-15, "{}", ray.direction);
+    }
+    let refused = |lines: &str| read(lines).unwrap_err();
+    for (lines, message) in [
+        ("BAG", "walk.mcap: file: poses of /odom (base_link in odom), /pose (in map), "),
+        (
+            "BAG\nposes_topic = \"/imu\"",
+            "walk.mcap: topic /imu: no pose; expected messages of nav_msgs/msg/Odometry",
+        ),
+        (
+            "BAG\nposes_frames = [\"map\"]",
+            "`rays 0.poses_frames` has 1 names; expected two: the parent and the child",
+        ),
+        (
+            "poses_file = \"w.tum\"\nposes_topic = \"/odom\"",
+            "`rays 0.poses_topic` without a bag; expected it beside a `poses_file`",
+        ),
+        ("poses_frames = [\"map\", \"lidar\"]", "`rays 0.poses_frames` without a bag"),
+    ] {
+        let error = refused(lines);
+        assert!(error.contains(message), "{error}");
+    }
+}
+
+/// Stamps that do not ascend, and a quaternion of length 2, in bags of this house.
+#[test]
+fn poses_of_a_bag_are_checked_as_those_of_a_file() {
+    use raypencil_rosbag::{BagWriter, Header, Stamp, TfMessage, Topic, TransformStamped};
+    let folder = tempfile::tempdir().unwrap();
+    let told = |seconds: u64, w: f64| {
+        let stamp = Stamp::from_nanoseconds(seconds * 1_000_000_000);
+        let header = Header { stamp, frame_id: "map".into() };
+        let mut one =
+            TransformStamped { header, child_frame_id: "lidar".into(), ..TransformStamped::default() };
+        one.transform.rotation.w = w;
+        TfMessage { transforms: vec![one] }
+    };
+    for (second, message) in [
+        (told(4, 1.0), "message 2 of /tf: a time of 4; expected more than 4 seconds, the time before it"),
+        (told(5, 2.0), "message 2 of /tf: a quaternion of length 2; expected 1 to within 0.001"),
+        (told(5, f64::NAN), "message 2 of /tf: a quaternion of length NaN"),
+    ] {
+        let path = folder.path().join("bag");
+        let mut bag = BagWriter::create(&path).unwrap();
+        for one in [told(4, 1.0), second] {
+            bag.write(&Topic::new("/tf"), Stamp::from_nanoseconds(1), &one).unwrap();
+        }
+        bag.finish().unwrap();
+        let bytes = std::fs::read(path.join("bag_0.mcap")).unwrap();
+        let error =
+            poses_from_bag(&bytes, &PoseChoice::default(), Path::new("bag_0.mcap")).unwrap_err().to_string();
+        assert!(error.contains(message), "{error}");
+    }
 }

@@ -490,3 +490,80 @@ fn a_mesh_without_any_face_is_refused_where_rays_are_cast() {
         assert!(!folder.join("out").exists(), "{line:?}");
     }
 }
+
+/// Twenty posts 2 m apart, to the south-east of a map's (1000000, 500), all 7 m high.
+#[test]
+fn clouds_of_ground_in_a_map_name_their_origin() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let at = folder.path();
+    fs::write(at.join("flat.tif"), super::terrain::import::geotiff(5, 4, &[7.0; 20])).expect("a file");
+    // The sensor stands 2 m over the middle of the ground, and looks straight down.
+    let scene = "version = 1\n[terrain]\ndem = \"flat.tif\"\n[vehicle]\nposition_m = [1000005, 496]\n[[rays]]\nname = \"down\"\n\
+                 spinning = { elevations_deg = [-90], steps = 2 }\nposition_m = [0, 0, 2]\n";
+    fs::write(at.join("scene.toml"), scene).expect("a file");
+    let json = |path: &str| -> serde_json::Value {
+        serde_json::from_str(&fs::read_to_string(at.join(path)).expect("a summary")).expect("JSON")
+    };
+    let schema = |text: &str| -> serde_json::Value { serde_json::from_str(text).expect("JSON") };
+    screen(at, &["cast", "scene.toml", "--bag", "velodyne", "-o", "out"], 0);
+    let summary = json("out/summary.json");
+    let of_cast = schema(include_str!("../../../../../../docs/formats/cast.schema.json"));
+    assert_eq!(schema_faults(&of_cast, &summary), Vec::<String>::new());
+    let origin: Vec<f64> = summary["mesh"]["originM"]
+        .as_array()
+        .expect("three")
+        .iter()
+        .map(|x| x.as_f64().expect("a number"))
+        .collect();
+    // Point and origin together are the place on the map, in whole numbers.
+    let point = read_npy_numbers(at.join("out/point.npy"), &Limits::default()).expect("an array").values;
+    let place: Vec<f64> = (0..3).map(|axis| origin[axis] + point[axis]).collect();
+    assert_eq!(place, [1_000_005.0, 496.0, 7.0]);
+    assert!(origin[0] > 999_999.0 && point[0].abs() < 10.0, "{origin:?}");
+    for cloud in ["cloud.ply", "cloud.pcd", "cloud-sensor.pcd"] {
+        let bytes = fs::read(at.join("out").join(cloud)).expect("a cloud");
+        let line = format!(" map_origin_m {} {} {}\n", origin[0], origin[1], origin[2]);
+        assert!(String::from_utf8_lossy(&bytes).contains(&line), "{cloud}");
+    }
+    screen(at, &["cast", "scene.toml", "--scans", "1", "--bag", "velodyne", "-o", "scans"], 0);
+    let of_scans = schema(include_str!("../../../../../../docs/formats/scans.schema.json"));
+    let summary = json("scans/summary.json");
+    assert_eq!(schema_faults(&of_scans, &summary), Vec::<String>::new());
+    assert_eq!(summary["mesh"]["originM"], serde_json::json!(origin));
+    assert_eq!(summary["scans"]["count"], 2);
+}
+
+#[test]
+fn returns_of_beams_are_counted_and_written() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let at = folder.path();
+    // Two walls, of which the nearer ends in the middle of the view.
+    let walls = "v 10 -0.001 -9\nv 10 9 -9\nv 10 9 9\nv 10 -0.001 9\nv 20 -9 -9\nv 20 9 -9\nv 20 9 9\nv 20 -9 9\nf 1 2 3 4\nf 5 6 7 8\n";
+    fs::write(at.join("walls.obj"), walls).expect("a file");
+    let of =
+        "of = { grid = { columns = 3, rows = 1, width_deg = 40, height_deg = 0 } }, divergence_mrad = 20";
+    let set =
+        format!("[[rays]]\nname = \"wide\"\ncone = {{ {of}, returns = {{ keep = 2, separation_m = 1 }} }}\n");
+    fs::write(at.join("wide.toml"), set).expect("a file");
+    let shown = screen(at, &["cast", "walls.obj", "wide.toml", "--bag", "ouster", "-o", "out"], 0);
+    assert!(shown.contains("wide: 3 footprints: 3 have a return, 1 are mixed; 4 returns told"), "{shown}");
+    let summary: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(at.join("out/summary.json")).expect("a summary"))
+            .expect("JSON");
+    let schema = include_str!("../../../../../../docs/formats/cast.schema.json");
+    assert_eq!(schema_faults(&serde_json::from_str(schema).expect("JSON"), &summary), Vec::<String>::new());
+    assert_eq!(summary["returns"]["keep"], 2);
+    let read =
+        |name: &str| read_npy_numbers(at.join("out").join(name), &Limits::default()).expect("an array");
+    // The left beam is on the near wall, the middle one on both, the right one on the far wall.
+    assert_eq!(
+        (read("return.count.npy").shape, read("return.count.npy").values),
+        (vec![1, 3], vec![1.0, 2.0, 1.0])
+    );
+    assert_eq!(read("return.range.npy").shape, [1, 3, 2]);
+    let page = fs::read_to_string(at.join("out/report.html")).expect("a page");
+    assert!(page.contains("\"mixed\"") && page.contains("\"return\""), "maps of returns");
+    let json = screen(at, &["--json", "cast", "walls.obj", "wide.toml"], 0);
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    assert_eq!(json["sets"][0]["returns"]["mixed"], 1);
+}

@@ -18,7 +18,7 @@ use raypencil_scene::{NamedRaySet, SceneError, Sides};
 use crate::digest::NamedDigest;
 use crate::parse::key::Key;
 use crate::parse::rays::cone::ConeKeys;
-use crate::parse::rays::mount::{OnePose, TimedPoseKeys};
+use crate::parse::rays::mount::{BagKeys, OnePose, TimedPoseKeys};
 use crate::parse::rays::pattern::{Pattern, PatternKeys};
 use crate::parse::source::Source;
 use crate::scene_error::SceneIoError;
@@ -46,6 +46,8 @@ pub(crate) struct RaysKeys {
     roll_right_deg: Key<f64>,
     poses: Key<Vec<Spanned<TimedPoseKeys>>>,
     poses_file: Key<String>,
+    poses_topic: Key<String>,
+    poses_frames: Key<Vec<String>>,
 }
 
 impl Source<'_> {
@@ -139,9 +141,13 @@ impl Source<'_> {
         self.choice(&keys.sides, &format!("{name}.sides"), &mut sides, &words)?;
         let pose =
             OnePose::new(&keys.position_m, [&keys.yaw_left_deg, &keys.pitch_down_deg, &keys.roll_right_deg]);
+        let choice = BagKeys { topic: &keys.poses_topic, frames: &keys.poses_frames };
         let mounting = match &keys.poses_file {
-            Some(file) => self.mounting_of_file(&name, &pose, (&keys.poses, file), digests)?,
-            None => self.mounting(&name, &pose, &keys.poses)?,
+            Some(file) => self.mounting_of_file(&name, &pose, (&keys.poses, file), choice, digests)?,
+            None => {
+                self.without_bag(&name, choice)?;
+                self.mounting(&name, &pose, &keys.poses)?
+            }
         };
         let start = self.start(&name, &keys.start_s)?;
         let refused = |error| self.refused(table.span(), &error);

@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
 
-use raypencil_files::sha256;
+use raypencil_rosbag::PoseChoice;
 use raypencil_scene::Pose;
 use raypencil_scene::pattern::{Mounting, TimedPose, TimedPoses};
 
@@ -16,7 +16,7 @@ use crate::parse::shared::{GLOBAL_M, TURN_DEG};
 use crate::parse::source::Source;
 use crate::resolve::turned;
 use crate::scene_error::SceneIoError;
-use crate::trajectory::{TIME_S, read_trajectory};
+use crate::trajectory::{TIME_S, is_bag, read_trajectory};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -26,6 +26,13 @@ pub(crate) struct TimedPoseKeys {
     pitch_down_deg: Key<f64>,
     yaw_left_deg: Key<f64>,
     roll_right_deg: Key<f64>,
+}
+
+/// Keys that choose poses of a bag.
+#[derive(Clone, Copy)]
+pub(super) struct BagKeys<'k> {
+    pub topic: &'k Key<String>,
+    pub frames: &'k Key<Vec<String>>,
 }
 
 /// Keys of one pose: its position, and its yaw, pitch and roll.
@@ -61,6 +68,7 @@ impl Source<'_> {
         name: &str,
         pose: &OnePose<'_>,
         (poses, file): (&Key<Vec<Spanned<TimedPoseKeys>>>, &Spanned<String>),
+        choice: BagKeys<'_>,
         digests: &mut Vec<NamedDigest>,
     ) -> Result<Mounting, SceneIoError> {
         let beside = poses.as_ref().map(|poses| ("poses", poses.span())).or_else(|| pose.first_given());
@@ -71,15 +79,50 @@ impl Source<'_> {
         let path = self.file.parent().unwrap_or(Path::new("")).join(file.get_ref());
         if !path.is_file() {
             let message = format!(
-                "`{name}.poses_file`: there is no file \"{}\"; expected poses as TUM or CSV, the path relative to this file",
+                "`{name}.poses_file`: there is no file \"{}\"; expected poses as TUM, CSV or MCAP, the path relative to this file",
                 path.display()
             );
             return Err(self.error(file.span(), message));
         }
-        let (timed, bytes) = read_trajectory(&path)?;
-        digests.push((file.get_ref().clone(), sha256(&bytes)));
+        if !is_bag(&path) {
+            self.without_bag(name, choice)?;
+        }
+        let choice = PoseChoice {
+            topic: choice.topic.as_ref().map(|topic| topic.get_ref().as_str()),
+            frames: choice.frames.as_ref().map(|frames| self.frames(name, frames)).transpose()?,
+        };
+        let (timed, digest) = read_trajectory(&path, &choice)?;
+        digests.push((file.get_ref().clone(), digest));
         let refused = |error| self.refused(file.span(), &error);
         Ok(Mounting::Moving(TimedPoses::new(timed, &format!("{name}.poses_file")).map_err(refused)?))
+    }
+
+    /// Refuses keys of a bag where there is none.
+    pub(super) fn without_bag(&self, name: &str, choice: BagKeys<'_>) -> Result<(), SceneIoError> {
+        let given = [("poses_topic", span(choice.topic)), ("poses_frames", span(choice.frames))];
+        match given.into_iter().find_map(|(key, place)| Some((key, place?))) {
+            Some((key, place)) => {
+                let message = format!(
+                    "`{name}.{key}` without a bag; expected it beside a `poses_file` that ends in .mcap"
+                );
+                Err(self.error(place, message))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Parent and child frame.
+    fn frames<'k>(&self, name: &str, frames: &'k Spanned<Vec<String>>) -> Result<[&'k str; 2], SceneIoError> {
+        match frames.get_ref().as_slice() {
+            [parent, child] => Ok([parent, child]),
+            other => {
+                let message = format!(
+                    "`{name}.poses_frames` has {} names; expected two: the parent and the child, as [\"map\", \"lidar\"]",
+                    other.len()
+                );
+                Err(self.error(frames.span(), message))
+            }
+        }
     }
 
     /// Pose, or poses, of the set `name`.

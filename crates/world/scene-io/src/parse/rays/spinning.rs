@@ -14,6 +14,9 @@ use crate::scene_error::SceneIoError;
 /// Turns of a head in a second.
 const RATE_HZ: RangeInclusive<f64> = 1e-3..=1e3;
 
+/// Relative difference of two rates, one of them from the step of the azimuth, that rounding to seven digits may leave.
+const MAX_RATE_ERROR: f64 = 1e-6;
+
 /// Turns of a head in a second, if the file gives none.
 const DEFAULT_RATE_HZ: f64 = 10.0;
 
@@ -180,7 +183,32 @@ impl Source<'_> {
             return Err(self.error(table.span(), message));
         }
         head.azimuth_step_deg = new;
-        head.period_s = new.abs() / (360.0 * rate);
-        Ok(())
+        let of_preset = keys.preset.as_ref().map(|preset| preset.get_ref().as_str());
+        if !of_preset.is_some_and(Spinning::fires_at_its_own_pace) {
+            head.period_s = new.abs() / (360.0 * rate);
+            return Ok(());
+        }
+        // The period stays: the step says how fast the head turns.
+        let turned = new.abs() / 360.0 / head.period_s;
+        let period_us = head.period_s * 1e6;
+        let message = match keys.rate_hz {
+            Some(_) if (turned / rate - 1.0).abs() > MAX_RATE_ERROR => {
+                let expected = 360.0 * rate * head.period_s;
+                format!(
+                    "a step of {} degrees at {rate} turns a second; expected {expected:.7}, for the preset has a firing sequence every \
+                     {period_us:.3} µs",
+                    new.abs()
+                )
+            }
+            None if !RATE_HZ.contains(&turned) => {
+                let (low, high) = (RATE_HZ.start(), RATE_HZ.end());
+                format!(
+                    "a step of {} degrees every {period_us:.3} µs is {turned:.0} turns a second; expected {low} to {high}",
+                    new.abs()
+                )
+            }
+            _ => return Ok(()),
+        };
+        Err(self.error(table.span(), format!("`{name}`: {message}")))
     }
 }

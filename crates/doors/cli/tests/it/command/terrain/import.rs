@@ -20,7 +20,7 @@ fn folder() -> TempDir {
 }
 
 /// A little-endian TIFF of one strip. (TIFF 6.0, section 2)
-pub(super) fn geotiff(width: u32, height: u32, heights: &[f32]) -> Vec<u8> {
+pub(crate) fn geotiff(width: u32, height: u32, heights: &[f32]) -> Vec<u8> {
     let mut file = b"II*\0\0\0\0\0".to_vec();
     let samples_at = file.len() as u32;
     file.extend(heights.iter().flat_map(|height| height.to_le_bytes()));

@@ -1,5 +1,5 @@
 //! `terrain`: terrains as files.
 
 mod generate;
-mod import;
+pub(super) mod import;
 mod inspect;

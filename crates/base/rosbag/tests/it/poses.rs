@@ -1,0 +1,163 @@
+//! Poses of other programs' bags, and of broken ones.
+
+use std::collections::BTreeMap;
+
+use mcap::records::MessageHeader;
+use mcap::{Compression, WriteOptions};
+use raypencil_rosbag::{BagPoses, PoseChoice, read_poses};
+
+/// Written by `rosbags` (reference/rosbag/write_poses.py): `/odom`, `/pose`, and `/tf` with two pairs of frames.
+const OF_ROSBAGS: [&[u8]; 2] =
+    [include_bytes!("../data/poses.mcap"), include_bytes!("../data/poses-zstd.mcap")];
+
+fn read(bytes: &[u8], topic: Option<&str>, frames: Option<[&str; 2]>) -> Result<BagPoses, String> {
+    read_poses(bytes, bytes.len() as u64, &PoseChoice { topic, frames }).map_err(|fault| fault.to_string())
+}
+
+#[test]
+fn poses_of_rosbags_are_read_with_and_without_zstandard() {
+    for bytes in OF_ROSBAGS {
+        let choices = [
+            (Some("/odom"), None, 1.0),
+            (Some("/pose"), None, 1.0),
+            (None, Some(["map", "lidar"]), 1.0),
+            (Some("/tf"), Some(["base_link", "wheel"]), 2.0),
+        ];
+        for (topic, frames, scale) in choices {
+            let found = read(bytes, topic, frames).expect("poses");
+            assert_eq!(found.topic, topic.unwrap_or("/tf"));
+            assert_eq!(found.poses.len(), 3);
+            for (k, pose) in found.poses.iter().enumerate() {
+                let at = k as f64;
+                assert_eq!((pose.message, pose.time_s), (k as u64 + 1, 1.7e9 + 0.25 * at));
+                assert_eq!(pose.position, [scale * at, -at / 2.0, 1.5]);
+                // Turned by 60 degrees a pose.
+                let half = (30.0 * at).to_radians();
+                let [x, y, z, w] = pose.rotation;
+                assert!(
+                    x == 0.0 && y == 0.0 && (z - half.sin()).abs() < 1e-15 && (w - half.cos()).abs() < 1e-15
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn several_series_of_poses_are_told_apart_by_topic_or_frames() {
+    let refused = |topic, frames| read(OF_ROSBAGS[0], topic, frames).expect_err("no single series");
+    assert_eq!(
+        refused(None, None),
+        "file: poses of /odom (base_link in odom), /pose (in map), /tf (wheel in base_link), /tf (lidar in map); expected one: \
+         `poses_topic` and `poses_frames` = [parent, child] choose it"
+    );
+    assert!(
+        refused(Some("/tf"), None)
+            .starts_with("topic /tf: poses of /tf (wheel in base_link), /tf (lidar in map)")
+    );
+    assert_eq!(
+        refused(Some("/gps"), None),
+        "topic /gps: no pose; expected messages of nav_msgs/msg/Odometry, geometry_msgs/msg/PoseStamped or tf2_msgs/msg/TFMessage; \
+         the file has /odom, /pose, /tf"
+    );
+    assert!(refused(None, Some(["lidar", "map"])).starts_with("file: no pose of \"map\" in \"lidar\""));
+}
+
+/// A bag with these messages of one topic.
+fn bag(schema: &str, encoding: &str, messages: &[Vec<u8>]) -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let options = WriteOptions::new().compression(Some(Compression::Lz4));
+    let mut writer = options.create(&mut bytes).expect("a bag");
+    let schema = writer.add_schema(schema, "ros2msg", b"").expect("a schema");
+    let id = writer.add_channel(schema, "/at", encoding, &BTreeMap::new()).expect("a channel");
+    for (sequence, data) in (0..).zip(messages) {
+        let header = MessageHeader { channel_id: id, sequence, log_time: 1, publish_time: 1 };
+        writer.write_to_known_channel(&header, data).expect("a message");
+    }
+    writer.finish().expect("a bag");
+    drop(writer);
+    bytes.into_inner()
+}
+
+/// A `PoseStamped` in big or little endian: frame `map` at 2.5 s, position (1, 2, 3), no turn.
+fn pose(is_big: bool) -> Vec<u8> {
+    let word = |value: u32| if is_big { value.to_be_bytes() } else { value.to_le_bytes() };
+    let real = |value: f64| if is_big { value.to_be_bytes() } else { value.to_le_bytes() };
+    let mut data = vec![0, u8::from(!is_big), 0, 0];
+    data.extend([word(2), word(500_000_000), word(4)].concat());
+    data.extend(b"map\0");
+    data.extend([1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0].map(real).concat());
+    data
+}
+
+const POSE: &str = "geometry_msgs/msg/PoseStamped";
+
+#[test]
+fn either_byte_order_is_read() {
+    let found = read(&bag(POSE, "cdr", &[pose(false), pose(true)]), None, None).expect("poses");
+    for pose in &found.poses {
+        assert_eq!((pose.time_s, pose.position, pose.rotation), (2.5, [1.0, 2.0, 3.0], [0.0, 0.0, 0.0, 1.0]));
+    }
+    assert_eq!(found.poses.len(), 2);
+}
+
+#[test]
+fn what_is_no_bag_of_poses_is_refused() {
+    let changed = |at: usize, value: u8| {
+        let mut data = pose(false);
+        data[at] = value;
+        data
+    };
+    let broken = bag(POSE, "cdr", &[pose(false), pose(false)[..40].to_vec()]);
+    // A transform that claims four billion others behind it.
+    let many = [&[0, 1, 0, 0, 255, 255, 255, 255][..], &pose(false)[4..]].concat();
+    for (bytes, message) in [
+        (
+            bag(POSE, "ros1", &[pose(false)]),
+            "message 1 of /at: the encoding \"ros1\"; expected cdr, that of ROS 2",
+        ),
+        (
+            broken,
+            "message 2 of /at: 40 bytes, which end within a value; expected the CDR of geometry_msgs/msg/PoseStamped",
+        ),
+        (bag(POSE, "cdr", &[vec![0, 1]]), "message 1 of /at: 2 bytes; expected the CDR of"),
+        (bag(POSE, "cdr", &[changed(1, 7)]), "message 1 of /at: the representation 0x00 0x07"),
+        (bag(POSE, "cdr", &[changed(11, 0xff)]), "a stamp of "),
+        (bag(POSE, "cdr", &[changed(17, 0xff)]), "a name of a frame that is no text"),
+        (bag(POSE, "cdr", &[changed(15, 0xff)]), "which end within a value"),
+        (bag("tf2_msgs/msg/TFMessage", "cdr", &[many]), "which end within a value"),
+        (
+            bag("sensor_msgs/msg/Imu", "cdr", &[pose(false)]),
+            "file: no pose; expected messages of nav_msgs/msg/Odometry",
+        ),
+        (bag(POSE, "cdr", &[]), "file: no pose; expected messages of nav_msgs/msg/Odometry"),
+        (
+            b"# timestamp tx ty tz qx qy qz qw\n".to_vec(),
+            "file: Bad magic number; expected a whole MCAP file",
+        ),
+        (Vec::new(), "expected a whole MCAP file"),
+    ] {
+        let found = read(&bytes, None, None).expect_err(message);
+        assert!(found.contains(message), "{found}: {message}");
+    }
+    let of_imu =
+        read(&bag("sensor_msgs/msg/Imu", "cdr", &[pose(false)]), Some("/at"), None).expect_err("no poses");
+    assert!(of_imu.contains("topic /at: messages of \"sensor_msgs/msg/Imu\""), "{of_imu}");
+}
+
+/// A bag that was cut off anywhere, or of which a byte is another, is read or refused, and asks for no memory that the file does not
+/// make plausible.
+#[test]
+fn cut_and_changed_bags_are_read_or_refused() {
+    for bytes in OF_ROSBAGS {
+        for end in (0..bytes.len()).step_by(7) {
+            assert!(read(&bytes[..end], Some("/odom"), None).is_err(), "cut at {end}");
+        }
+        for at in 0..bytes.len() {
+            let mut changed = bytes.to_vec();
+            changed[at] ^= 0xff;
+            if let Ok(found) = read(&changed, Some("/odom"), None) {
+                assert!(found.poses.len() <= 3);
+            }
+        }
+    }
+}
