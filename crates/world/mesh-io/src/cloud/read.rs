@@ -29,6 +29,10 @@ const HEAD_BYTES: u64 = 1 << 16;
 /// # Ok::<(), std::io::Error>(())
 /// ```
 pub fn claimed_points(path: &Path) -> Option<u64> {
+    // Asked before the file is opened: opening a pipe waits for its writer.
+    if !std::fs::metadata(path).ok()?.is_file() {
+        return None;
+    }
     let mut head = Vec::new();
     std::fs::File::open(path).ok()?.take(HEAD_BYTES).read_to_end(&mut head).ok()?;
     for line in head.split(|&byte| byte == b'\n') {
