@@ -71,6 +71,12 @@ if [[ -n $python ]]; then
     expect 1 "$python" reference/exact_margins.py data/rays/cube.obj data/rays/cube.npy "$margins" --rays 20
     other_bit "$folder/t.npy"
     expect 1 "$python" reference/exact_cast.py "$mesh" "$rays" "$folder" --displaced 0
+    # The returns of beams once more; a bit of one strength is found.
+    wide=$work/cast/wide
+    expect 0 "$raypencil" cast data/packs/facets/terrain.glb data/rays/wide.toml --up y -o "$wide"
+    expect 0 "$python" reference/lidar/returns.py "$wide"
+    other_bit "$wide/return.strength.npy"
+    expect 1 "$python" reference/lidar/returns.py "$wide"
     expect 0 "$python" reference/load_ground.py data/packs/input "$work/input"
     expect 0 "$raypencil" check data/packs/input "$work/input"
     # Nobody has seen these answers before.

@@ -43,6 +43,13 @@ pub struct FirstHit {
     pub cos_incidence: f64,
 }
 
+impl FirstHit {
+    /// The light of a small spot on a diffuse surface: abs(cos psi) / R^2, relative, without air and of one reflectivity.
+    pub fn light(&self) -> f64 {
+        self.cos_incidence.abs() / (self.range * self.range)
+    }
+}
+
 /// All faces that a ray meets at exactly the same t.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GroupAtT {

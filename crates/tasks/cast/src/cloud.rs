@@ -63,7 +63,7 @@ pub(crate) fn spots<'a>(
     (0..count).map(move |index| match returns {
         None => {
             let read = borrowed(&answers.first[index]);
-            let intensity = read.hit().map_or(f64::NAN, |hit| intensity(hit));
+            let intensity = read.hit().map_or(f64::NAN, |hit| hit.light());
             Spot { ray: index, read, intensity, of_return: None }
         }
         Some(returns) => spot_of_return(answers, returns, index),
@@ -284,9 +284,12 @@ pub fn write_pcd(
     let rings = rings(set);
     // Number of places with the same index in the second dimension, one after the other.
     let of_channel: u64 = shape.iter().skip(2).product();
-    let channel_of = |ray: usize| match shape.get(1) {
-        Some(&channels) => ray as u64 / rays_of_place / of_channel % channels,
-        None => 0,
+    let channel_of = |ray: usize| {
+        let index = ray as u64 / rays_of_place;
+        match shape.get(1) {
+            Some(&channels) => index / of_channel % channels,
+            None => 0,
+        }
     };
     let [more_fields, more_sizes, more_types, more_counts] = match returns {
         None => [""; 4],
@@ -367,11 +370,6 @@ pub(crate) fn places<'a>(set: &'a NamedRaySet, returns: Option<&BeamReturns>) ->
 
 pub(crate) fn rings(set: &NamedRaySet) -> Option<Vec<u64>> {
     Some(ranks(set.elevations_deg.as_ref()?))
-}
-
-/// The light of a small spot on a diffuse surface: cos(psi) / R^2, relative, without air.
-pub(crate) fn intensity(hit: &FirstHit) -> f64 {
-    hit.cos_incidence.abs() / (hit.range * hit.range)
 }
 
 /// The rank of each channel by its elevation, from below; of equal ones the first is lower.

@@ -7,7 +7,6 @@ use raypencil_scene::{NamedRaySet, Reading};
 use serde_json::{Value, json};
 
 use crate::answers::{Answers, FirstHit};
-use crate::cloud::intensity;
 
 /// A return: rays of one footprint that meet the mesh at ranges without a gap.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -199,7 +198,7 @@ fn one_return(group: &[(usize, &FirstHit)], number: u32, first_ray: usize, weigh
     let (leading, hit) = group[0];
     let (mut strength, mut times_range) = (0.0, 0.0);
     for (ray, hit) in group {
-        let light = weights[*ray] * intensity(hit);
+        let light = weights[*ray] * hit.light();
         strength += light;
         times_range += light * hit.range;
     }
