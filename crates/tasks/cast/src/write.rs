@@ -39,7 +39,7 @@ pub struct CastSource {
 impl CastSource {
     /// The map in which the mesh's frame lies, as clouds name it.
     pub fn map(&self) -> CloudMap {
-        CloudMap { origin: self.origin, system: self.facts.dem().map(DemFacts::map_name) }
+        CloudMap { origin: self.origin, system: self.facts.dem().and_then(DemFacts::map_name) }
     }
 }
 

@@ -106,9 +106,9 @@ impl DemFacts {
         lines
     }
 
-    /// Name of the coordinate system of x and y.
-    pub fn map_name(&self) -> String {
-        name(&self.map)
+    /// Name of the coordinate system of x and y, if the file has one.
+    pub fn map_name(&self) -> Option<String> {
+        (self.map.name.is_some() || self.map.code.is_some()).then(|| name(&self.map))
     }
 
     /// The systems and units in one line.

@@ -497,8 +497,12 @@ fn poses_of_a_bag_are_those_of_its_messages() {
         let ray = loaded.sets[0].set.rays()[0];
         // Half-way from the first pose to the second.
         assert_eq!(ray.origin, DVec3::new(0.5, -0.25, 1.5), "{choice}");
-        let (sin, cos) = 30_f64.to_radians().sin_cos();
-        assert!((ray.direction - DVec3::new(cos, sin, 0.0)).length() < 1e-15, "{}", ray.direction);
+        // 30 degrees to the left.
+        assert!(
+            (ray.direction - DVec3::new(0.75_f64.sqrt(), 0.5, 0.0)).length() < 1e-15,
+            "{}",
+            ray.direction
+        );
     }
     let refused = |lines: &str| read(lines).unwrap_err();
     for (lines, message) in [
