@@ -20,7 +20,7 @@ position_m = [@0, @0, @1]
 yaw_left_deg = @0
 sides = @\"fronts\"
 ",
-    "cone = { of = { grid = { columns = 2, rows = 2, width_deg = 9, height_deg = 9 } }, divergence_mrad = @1, rings = @2 }
+    "cone = { of = { grid = { columns = 2, rows = 2, width_deg = 9, height_deg = 9 } }, divergence_mrad = @1, rings = @2, returns = { keep = @2, separation_m = @1 } }
 ",
     "spinning = { preset = \"vlp-16\", steps = 4 }
 poses = [{ time_s = @0, yaw_left_deg = @0 }, { time_s = @5 }]

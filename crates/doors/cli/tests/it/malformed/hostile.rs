@@ -47,7 +47,7 @@ fn hostile_calibrations() {
 
 #[test]
 fn hostile_rays() {
-    assert_family(&rays(), 699, 90);
+    assert_family(&rays(), 730, 90);
 }
 
 #[test]
