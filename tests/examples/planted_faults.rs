@@ -108,6 +108,9 @@ impl Run {
 
     /// Builds and runs the tests of a crate.
     fn ask(&self, of: &str) -> Result<Outcome> {
+        if of == "python" {
+            return self.ask_python();
+        }
         let built = self.cargo(of, &["--no-run"])?;
         if !built.status.success() {
             let text = String::from_utf8_lossy(&built.stderr);
@@ -130,6 +133,29 @@ impl Run {
             true => Err(format!("the tests of {of} fail, and none is named").into()),
             false => Ok(Outcome::Caught { asked: of.to_string(), tests }),
         }
+    }
+
+    /// Builds the Python package and runs its tests, which are no Rust.
+    fn ask_python(&self) -> Result<Outcome> {
+        let mut command = Command::new(self.clone.join("crates/doors/python/run_tests.sh"));
+        command.args(["-q", "-rf"]).current_dir(&self.clone).env("CARGO_TARGET_DIR", &self.target);
+        let ran = command.output()?;
+        if ran.status.success() {
+            return Ok(Outcome::NotCaught);
+        }
+        // `FAILED crates/doors/python/tests/test_judge.py::test_it[one] - AssertionError`
+        let failed = |line: &str| {
+            let (test, _) = line.strip_prefix("FAILED ")?.split_once([' ', '['])?;
+            Some(test.rsplit('/').next()?.replace(".py::", "::"))
+        };
+        let mut tests: Vec<String> =
+            String::from_utf8_lossy(&ran.stdout).lines().filter_map(failed).collect();
+        tests.sort();
+        tests.dedup();
+        Ok(match tests.is_empty() {
+            true => Outcome::DoesNotCompile("the package cannot be built, or its types are wrong".into()),
+            false => Outcome::Caught { asked: "python".into(), tests },
+        })
     }
 
     /// The test that a line of the output names as failed.

@@ -43,12 +43,14 @@ struct Table {
 }
 
 impl PlantedFault {
-    /// The crate that the fault is planted in, by the path of its file; empty if the file is in no crate.
+    /// The crate that the fault is planted in, by the path of its file; empty if the file is no source of a crate: Rust, the
+    /// script of the pages, or the Python package.
     pub fn crate_name(&self) -> &str {
         self.file
             .strip_prefix("crates/")
             .and_then(|rest| rest.split_once('/'))
-            .and_then(|(_floor, rest)| rest.split_once("/src/"))
+            .and_then(|(_floor, rest)| rest.split_once('/'))
+            .filter(|(_, file)| ["src/", "script/", "python/"].iter().any(|folder| file.starts_with(folder)))
             .map_or("", |(name, _)| name)
     }
 
@@ -166,7 +168,8 @@ other, runs the tests, and writes this page.
 
 * The tests are the fast unit tests and integration tests of the fault's own crate. If they miss the fault, the tests of
   crates that depend on it are asked, as the table says. Doc tests are not run, and neither are the slowest tests: whole
-  drives, and files of any bytes.
+  drives, and files of any bytes. Faults in the script of the pages are asked of the tests that open pages in a browser, those
+  of the Python door of its tests by pytest.
 * *Caught by* is the first failing test in alphabetical order, and the number of other tests of the same crate that fail.
   Its crate is named where it is another one. Tests of digests come last, since they only say that something changed: no
   fault is caught by them alone.

@@ -96,8 +96,9 @@ pub(crate) struct CellStatistics {
     pub worst: Option<CellDifference>,
 }
 
-/// The number in a cell. "None" of whole numbers is NaN beside a channel of reals, where it has no other form.
-fn number(values: &Values, beside: &Values, index: usize) -> f64 {
+/// The number in a cell, as it is compared with the one `beside` it. "None" of whole numbers is NaN beside a channel of reals, where
+/// it has no other form.
+pub(crate) fn number(values: &Values, beside: &Values, index: usize) -> f64 {
     match (values, beside) {
         (Values::Wholes(whole), Values::Reals(real))
             if whole.cells()[index] == u32::MAX && real.cells()[index].is_nan() =>

@@ -6,7 +6,7 @@ use raypencil_explorer::{DifferingCell, RasterChannel, RasterGroup, RasterPage, 
 use raypencil_files::Values;
 use raypencil_judge::Class;
 
-use crate::cells::{Comparison, compare_numbers};
+use crate::cells::{Comparison, compare_numbers, number};
 use crate::difference::{ChannelDifference, Difference, Sides};
 use crate::words::unequal;
 
@@ -53,7 +53,7 @@ fn add(groups: &mut BTreeMap<(String, u32, u32), RasterGroup>, channel: &Channel
     let (group, name) = channel.key.rsplit_once('/').unwrap_or(("", &channel.key));
     let size = (channel.width, channel.height);
     let values = sides.channels.map(|side| &side.by_key[&channel.key].values);
-    let numbers = values.map(numbers_of);
+    let numbers = [numbers_of(values[0], values[1]), numbers_of(values[1], values[0])];
     let packed = match values {
         [Values::Wholes(a), Values::Wholes(b)] => {
             RasterChannel::Wholes([a, b].map(|image| Some(image.cells().to_vec())).into())
@@ -86,10 +86,56 @@ fn add(groups: &mut BTreeMap<(String, u32, u32), RasterGroup>, channel: &Channel
     entry.channels.push((name.to_string(), channel.unit.clone(), packed));
 }
 
-/// The cells as numbers; whole numbers are exact.
-fn numbers_of(values: &Values) -> Vec<f64> {
-    match values {
-        Values::Reals(image) => image.cells().to_vec(),
-        Values::Wholes(image) => image.cells().iter().map(|cell| f64::from(*cell)).collect(),
+/// The cells as numbers, as they are compared with those beside them; whole numbers are exact.
+fn numbers_of(values: &Values, beside: &Values) -> Vec<f64> {
+    let (width, height) = values.size();
+    (0..width as usize * height as usize).map(|index| number(values, beside, index)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use raypencil_files::{Channel, Channels, Storage};
+    use raypencil_scene::Image;
+
+    use super::*;
+    use crate::{Thresholds, diff};
+
+    #[test]
+    fn cells_differ_on_the_page_where_they_differ_in_the_table() {
+        let (none, nan) = (f64::from(u32::MAX), f64::NAN);
+        let channel =
+            |storage, values| Channel { file: PathBuf::new(), name: String::new(), storage, values };
+        let wholes = |cells: &[f64]| {
+            let cells = cells.iter().map(|cell| *cell as u32).collect();
+            channel(Storage::Whole, Values::Wholes(Image::from_cells(5, 1, cells)))
+        };
+        let reals =
+            |cells: &[f64]| channel(Storage::F32, Values::Reals(Image::from_cells(5, 1, cells.to_vec())));
+        let all = [
+            // Of whole numbers 4294967295 is "none", which reals write as NaN, or as the number itself.
+            (wholes(&[7.0, 8.0, none, none, none]), reals(&[7.0, 9.0, nan, none, 3.0])),
+            (wholes(&[7.0, 8.0, none, none, 4.0]), wholes(&[7.0, 9.0, none, 5.0, 4.0])),
+            (reals(&[1.0, nan, nan, 0.0, f64::INFINITY]), reals(&[1.0, nan, 2.0, -0.0, f64::INFINITY])),
+        ];
+        for (one, other) in all {
+            for [a, b] in [[&one, &other], [&other, &one]] {
+                let [a, b] = [a, b].map(|channel| Channels {
+                    by_key: [("camera/face.I".to_string(), channel.clone())].into(),
+                    ..Channels::default()
+                });
+                let difference = diff(&a, &b, &Thresholds::default()).expect("one channel");
+                let mut groups = BTreeMap::new();
+                add(&mut groups, &difference.channels[0], &Sides { names: ["a", "b"], channels: [&a, &b] });
+                let group = groups.values().next().expect("a group");
+                assert_eq!(
+                    group.differing.len() as u64,
+                    difference.channels[0].unequal,
+                    "{:?}",
+                    group.channels
+                );
+            }
+        }
     }
 }

@@ -8,7 +8,7 @@ use raypencil_report::{
 };
 use raypencil_scene::{Image, Maybe};
 
-use crate::cells::{Comparison, compare_numbers};
+use crate::cells::{Comparison, compare_numbers, number};
 use crate::difference::{ChannelDifference, Difference, Sides};
 use crate::words::unequal;
 
@@ -104,14 +104,15 @@ fn difference_figure(channel: &ChannelDifference, [a, b]: [&Values; 2], reductio
     let (width, height) = a.size();
     let cells = width as usize * height as usize;
     let is_whole = channel.storage == Storage::Whole;
-    let incomparable = |index: usize| match compare_numbers(a.real(index), b.real(index)) {
+    let compared = |index: usize| compare_numbers(number(a, b, index), number(b, a, index));
+    let incomparable = |index: usize| match compared(index) {
         Comparison::Incomparable => true,
         Comparison::Apart(_) => is_whole,
         Comparison::Equal => false,
     };
-    let difference = |index: usize| match compare_numbers(a.real(index), b.real(index)) {
+    let difference = |index: usize| match compared(index) {
         Comparison::Apart(difference) if difference.is_finite() => Some(difference),
-        Comparison::Equal if a.real(index).is_finite() => Some(0.0),
+        Comparison::Equal if number(a, b, index).is_finite() => Some(0.0),
         _ => None,
     };
     let differences: Vec<Maybe<f64>> = (0..cells).map(|index| difference(index).into()).collect();

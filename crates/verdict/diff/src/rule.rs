@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use raypencil_judge::{Check, Class, Defect, GroundTruth, Item, Quantity, item_of_channel};
 use raypencil_scene::{Place, SensorId};
 
-use crate::cells::{Comparison, Thresholds, compare_numbers};
+use crate::cells::{Comparison, Thresholds, compare_numbers, number};
 use crate::difference::{Difference, Sides};
 use crate::rulings::{ChannelRuling, RuledCell, Rulings};
 
@@ -29,7 +29,7 @@ pub fn rule(difference: &Difference, sides: &Sides, truth: &GroundTruth<'_>, che
         let [a, b] = sides.channels.map(|channels| &channels.by_key[&channel.key].values);
         let mut ruling = ChannelRuling::default();
         for index in 0..channel.cells() as usize {
-            let (x, y) = (a.real(index), b.real(index));
+            let (x, y) = (number(a, b, index), number(b, a, index));
             if !exceeds(&difference.thresholds, x, y, channel.storage.ulp(x.abs().max(y.abs()))) {
                 continue;
             }

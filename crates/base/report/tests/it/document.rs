@@ -114,6 +114,22 @@ fn each_part_stands_where_it_has_room() {
 }
 
 #[test]
+fn what_a_writer_leaves_out_is_counted() {
+    let mut document = document();
+    for (count, left_out) in [(9, None), (10, None), (11, Some(1)), (37, Some(27))] {
+        let lines = (0..count).map(|k| DefectLine { place: format!("place {k}."), ..line() }).collect();
+        let group = DefectGroup { title: "camera".into(), lines, more: String::new() };
+        document.blocks = vec![Block::Findings { title: "Defects", groups: vec![group], worst: Vec::new() }];
+        let markdown = document.markdown();
+        let listed = (0..count).filter(|k| markdown.contains(&format!("place {k}."))).count();
+        assert_eq!(listed, count - left_out.unwrap_or(0), "{markdown}");
+        let words = left_out.map(|more| format!("\n{more} more are on the page.\n"));
+        assert_eq!(markdown.contains("more are on the page"), words.is_some(), "{markdown}");
+        assert!(words.is_none_or(|words| markdown.contains(&words)), "{markdown}");
+    }
+}
+
+#[test]
 fn names_are_no_markup() {
     let document = document();
     let (page, markdown) = (document.page().unwrap(), document.markdown());

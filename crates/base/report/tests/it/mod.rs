@@ -1,5 +1,6 @@
 //! Everything that reports are made of, by its public items.
 
+mod axes;
 mod document;
 mod drawing;
 mod junit;

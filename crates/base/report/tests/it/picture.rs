@@ -35,6 +35,19 @@ fn a_tiny_map_has_the_colours_of_viridis_and_a_transparent_miss() {
 }
 
 #[test]
+fn a_cell_has_the_nearest_colour_of_its_bar() {
+    // A picture has 253 colours: steps of 1/252 of the scale.
+    let places: Vec<f64> = (0..=1000).map(|k| f64::from(k) / 1000.0).collect();
+    let cells: Vec<Option<f64>> = places.iter().copied().map(Some).collect();
+    let picture = Picture::of_map(&map(1001, 1, &cells), Scale::linear(0.0, 1.0), ALL);
+    for (place, pixel) in places.into_iter().zip(decode(&picture).2) {
+        let near = (0..=252).map(|k| f64::from(k) / 252.0).filter(|at| (at - place).abs() <= 0.5001 / 252.0);
+        let colours: Vec<[u8; 3]> = near.map(|at| ColourMap::Sequential.at(at)).collect();
+        assert!(colours.iter().any(|colour| *colour == pixel[..3]), "{place}: {pixel:?}, not of {colours:?}");
+    }
+}
+
+#[test]
 fn differences_are_blue_below_and_red_above_zero() {
     let map = map(4, 1, &[Some(-1.0), Some(0.0), Some(1.0), None]);
     let scale = Scale::symmetric([1.0]).unwrap();
@@ -59,6 +72,18 @@ fn a_reduced_map_keeps_its_largest_difference() {
     assert_eq!((width, height), (3, 3));
     let coloured: Vec<usize> = (0..9).filter(|&pixel| pixels[pixel][0] < 0x80).collect();
     assert_eq!(coloured, [4]);
+}
+
+#[test]
+fn a_reduced_map_shows_what_one_side_alone_hits_wherever_it_is_in_its_block() {
+    let cells = vec![Some(1.0); 7 * 5];
+    let (scale, reduction) = (Scale::symmetric([2.0]).unwrap(), Reduction::to_fit(7, 5, 3));
+    for (i, j) in (0..5).flat_map(|j| (0..7).map(move |i| (i, j))) {
+        let picture = Picture::of_differences(&map(7, 5, &cells), |x, y| (x, y) == (i, j), scale, reduction);
+        let (_, _, pixels) = decode(&picture);
+        let shown: Vec<usize> = (0..9).filter(|&pixel| pixels[pixel] == [0xff, 0x00, 0xe6, 0xff]).collect();
+        assert_eq!(shown, [(i / 3 + 3 * (j / 2)) as usize], "{i},{j}");
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use raypencil_report::{count, list, number, quantity, time};
+use raypencil_report::{count, escaped, list, number, quantity, time};
 
 #[test]
 fn counts_have_their_thousands_apart() {
@@ -30,6 +30,32 @@ fn numbers_have_three_digits() {
         assert_eq!(number(value), text);
     }
     assert_eq!(quantity(2.0, "m"), "2.00 m");
+}
+
+#[test]
+fn three_digits_stay_three_where_rounding_carries() {
+    for exponent in -3..=2 {
+        for mantissa in [1.0, 1.234, 9.899, 9.9849, 9.9949, 9.9951, 9.997, 9.9994, 9.9996] {
+            let value: f64 = format!("{mantissa}e{exponent}").parse().unwrap();
+            let text = number(value);
+            let digits = text.replace('.', "");
+            // Above 999.5 a whole number has four.
+            let expected = if value >= 999.5 { 4 } else { 3 };
+            assert_eq!(digits.trim_start_matches('0').len(), expected, "{value} is {text}");
+            assert!((text.parse::<f64>().unwrap() - value).abs() <= 0.005 * value, "{value} is {text}");
+        }
+    }
+}
+
+#[test]
+fn a_text_stays_one_text_in_an_element_and_in_an_attribute() {
+    for text in ["a < b", "a > b", "a & b", "say \"no\"", "&quot;", "two\nlines", "\u{1b}[31m", "plain"] {
+        let shown = escaped(text);
+        assert!(!shown.contains(['<', '>', '"', '\n', '\u{1b}']), "{text:?} is {shown:?}");
+        let entities = [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&amp;", "&")];
+        let read = entities.into_iter().fold(shown, |text, (entity, letter)| text.replace(entity, letter));
+        assert_eq!(read, text.replace(|letter: char| letter.is_control(), " "));
+    }
 }
 
 #[test]

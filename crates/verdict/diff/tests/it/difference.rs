@@ -64,6 +64,67 @@ fn the_numbers_of_a_channel_are_those_by_hand() {
 }
 
 #[test]
+fn of_equal_differences_the_first_cell_is_shown() {
+    let found = singles(&[1.0, 2.0, 5.0, 3.0], &[1.0, 2.5, 5.5, 2.5], &NONE);
+    assert_eq!((found.largest, found.worst.map(|cell| cell.i)), (Some(0.5), Some(1)));
+    let found = one(wholes(&[1, 2, 3]), wholes(&[1, 9, 9]), &NONE);
+    assert_eq!(found.worst.map(|cell| cell.i), Some(1));
+    let found = singles(&[1.0, f64::NAN, f64::NAN], &[1.0, 1.0, 2.0], &NONE);
+    assert_eq!(found.worst.map(|cell| cell.i), Some(1));
+}
+
+#[test]
+fn the_largest_difference_in_ulps_may_be_in_another_cell_than_the_largest() {
+    // An ulp of single precision is 2^-23 at 1 and 2^-13 at 1024.
+    let step = 2.0_f64.powi(-23);
+    for (a, b) in [
+        ([1.0, 1024.0], [1.0 + 5.0 * step, 1025.0]),
+        ([1024.0, 1.0], [1024.0 + 1024.0 * step, 1.0 + 3.0 * step]),
+    ] {
+        let found = singles(&a, &b, &NONE);
+        let ulps: Vec<f64> =
+            a.iter().zip(b).map(|(a, b)| (a - b).abs() / Storage::F32.ulp(a.abs().max(b.abs()))).collect();
+        assert_eq!(found.largest_ulp, ulps.into_iter().reduce(f64::max));
+    }
+}
+
+#[test]
+fn cells_that_are_not_finite_have_no_part_in_the_means() {
+    // Differences of 3 and 4, and two cells without a number.
+    let (nan, inf) = (f64::NAN, f64::INFINITY);
+    let found = singles(&[1.0, nan, 2.0, inf], &[4.0, nan, 6.0, inf], &NONE);
+    assert_eq!((found.mean, found.rms), (Some(3.5), Some(12.5_f64.sqrt())));
+    let found = singles(&[1.0, nan, 2.0, inf], &[4.0, 1.0, 6.0, 2.0], &NONE);
+    assert_eq!((found.mean, found.rms), (Some(3.5), Some(12.5_f64.sqrt())));
+}
+
+#[test]
+fn none_of_whole_numbers_is_nan_or_its_own_number_beside_reals() {
+    let none = f64::from(u32::MAX);
+    let (whole, real) =
+        (wholes(&[u32::MAX, u32::MAX, u32::MAX, 5]), reals(Storage::F64, &[none, f64::NAN, 5.0, f64::NAN]));
+    for [a, b] in [[&whole, &real], [&real, &whole]] {
+        let found = one(a.clone(), b.clone(), &NONE);
+        assert_eq!((found.unequal, found.incomparable), (2, 1));
+    }
+}
+
+#[test]
+fn allowed_differences_are_told_with_what_they_are_of() {
+    let (a, b) =
+        (recording([("x", reals(Storage::F32, &[1.0]))]), recording([("x", reals(Storage::F32, &[1.0]))]));
+    let told = |thresholds: Thresholds| {
+        let sides = Sides { names: ["a", "b"], channels: [&a, &b] };
+        diff_document(&diff(&a, &b, &thresholds).unwrap(), &sides).remarks.remove(0)
+    };
+    assert_eq!(told(Thresholds { fail: 0.25, ..NONE }), "Allowed: 0.25 absolute.");
+    assert_eq!(told(Thresholds { fail_relative: 0.125, ..NONE }), "Allowed: 0.125 relative.");
+    assert_eq!(told(Thresholds { fail_ulp: 3.0, ..NONE }), "Allowed: 3 ulp.");
+    let percent = Thresholds { fail_percent: 2.5, hard_fail: Some(0.5), ..NONE };
+    assert_eq!(told(percent), "Allowed: no difference, beyond it 2.5 % of the cells, none by more than 0.5.");
+}
+
+#[test]
 fn any_of_three_thresholds_lets_a_cell_pass() {
     // 8 and 8.5: 0.5 absolute, 0.5 / 8.5 relative, and an ulp at 8 is 2^-20: 2^19 ulp.
     let differing = |thresholds: Thresholds| singles(&[8.0], &[8.5], &thresholds).differing;
@@ -86,8 +147,14 @@ fn ulps_are_those_of_the_coarser_file() {
     let ulps = |a, b| one(reals(a, &[1.0]), reals(b, &[step]), &NONE).largest_ulp.unwrap();
     assert_eq!(ulps(Storage::F32, Storage::F64), 1.0);
     assert_eq!(ulps(Storage::F64, Storage::F64), 536_870_912.0);
-    // In half precision an ulp at 1 is 2^-10.
+    // In half precision an ulp at 1 is 2^-10. Which side is the coarser one does not count.
     assert_eq!(ulps(Storage::F16, Storage::F64), 1.0 / 8192.0);
+    for (fine, coarse) in
+        [(Storage::F64, Storage::F32), (Storage::F32, Storage::F16), (Storage::F64, Storage::F16)]
+    {
+        assert_eq!(ulps(fine, coarse), ulps(coarse, fine), "{fine} {coarse}");
+        assert_eq!(ulps(fine, coarse), ulps(coarse, coarse), "{fine} {coarse}");
+    }
     let allowed = |a, b| one(reals(a, &[1.0]), reals(b, &[step]), &Thresholds { fail_ulp: 1.0, ..NONE });
     assert!(!allowed(Storage::F32, Storage::F64).fails);
     assert!(allowed(Storage::F64, Storage::F64).fails);
@@ -178,6 +245,28 @@ fn the_unit_is_what_either_file_says() {
     a.attributes.insert("f.exr".into(), texts);
     assert_eq!(diff(&b, &a, &NONE).unwrap().channels[0].unit, "m");
     assert_eq!(diff(&a, &b, &NONE).unwrap().channels[0].unit, "m");
+}
+
+#[test]
+fn what_could_not_be_judged_is_left_to_the_thresholds() {
+    let a = recording([("x", reals(Storage::F32, &[1.0]))]);
+    let b = recording([("x", reals(Storage::F32, &[2.0]))]);
+    let ruled = |thresholds: &Thresholds, classes: (Class, Class), not_judged: u64| {
+        let ruling = ChannelRuling { by_class: [(classes, 1)].into(), not_judged, wrong: Vec::new() };
+        let rulings = Rulings { channels: [("x".to_string(), ruling)].into(), not_ruled: Vec::new() };
+        diff(&a, &b, thresholds).unwrap().with_rulings(rulings).passes()
+    };
+    let (fine, wide) = ((Class::Tie, Class::Rounding), Thresholds { fail: 1.0, ..NONE });
+    // All are judged and right: the thresholds no longer count.
+    assert!(ruled(&NONE, fine, 0) && ruled(&wide, fine, 0));
+    assert!(!ruled(&NONE, fine, 1) && ruled(&wide, fine, 1));
+    for wrong in
+        [(Class::Defect, Class::Agree), (Class::Agree, Class::Defect), (Class::Agree, Class::Undecided)]
+    {
+        assert!(!ruled(&NONE, wrong, 0) && !ruled(&wide, wrong, 0), "{wrong:?}");
+    }
+    let hard = Thresholds { hard_fail: Some(0.5), ..wide };
+    assert!(!ruled(&hard, fine, 0));
 }
 
 /// Two recordings: NaN against a number, whole numbers that differ, an equal channel, and a channel on either side
@@ -347,4 +436,10 @@ fn a_folder_is_complete_and_its_files_escape_names() {
         (&2.into(), &1.into(), &0.5.into())
     );
     assert_eq!(summary["channels"][1]["largest"], serde_json::Value::Null);
+    let worst = &summary["channels"][1]["worst"];
+    assert_eq!((&worst["column"], &worst["a"], &worst["b"]), (&1.into(), &2.0.into(), &3.0.into()));
+    assert_eq!(
+        (&summary["only_a"], &summary["only_b"]),
+        (&serde_json::json!(["only-a"]), &serde_json::json!(["only-b"]))
+    );
 }
