@@ -5,11 +5,16 @@ use std::sync::{Arc, Mutex};
 
 use glam::DVec3;
 use raypencil_scene::{
-    Beam, Filter, FluxModel, Lens, Mesh, Mounted, Place, Pose, Profile, Progress, Scene, SensorId, Silent,
+    Beam, Filter, FluxModel, Lens, Material, Mesh, Mounted, Place, Pose, Profile, Progress, Scene, SensorId,
+    Silent,
 };
 use raypencil_tests::fixtures::subject;
 
+use crate::nearest_faces::faces_by_distance;
+use crate::reducer::Reducer;
 use crate::reduction::Reduction;
+use crate::short_numbers::shorten_numbers;
+use crate::simplest_values::simplify_values;
 use crate::{MINIMISE_BUDGET, Minimised, NotInteresting, minimise};
 
 fn search(
@@ -42,6 +47,97 @@ fn wall() -> Scene {
         FluxModel::Eq1,
     )
     .unwrap()
+}
+
+/// A mesh of these faces, with three vertices each.
+fn mesh_of(triangles: &[[[f32; 3]; 3]], kinds: &[u16], reflectivities: &[f64]) -> Arc<Mesh> {
+    let named = |(k, &reflectivity): (usize, &f64)| Material { name: format!("kind {k}"), reflectivity };
+    let faces = (0..triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    let materials = reflectivities.iter().enumerate().map(named).collect();
+    Arc::new(Mesh::new(DVec3::ZERO, triangles.concat(), faces, kinds.to_vec(), materials).unwrap())
+}
+
+/// A small triangle about a place.
+fn spot([x, y, z]: [f32; 3]) -> [[f32; 3]; 3] {
+    [[x, y, z], [x, y + 0.01, z], [x + 0.01, y, z]]
+}
+
+#[test]
+fn faces_near_the_line_of_sight_come_before_those_beside_the_ray() {
+    // The pencil runs along z from the origin to a wall 10 m ahead, which the camera sees from 10 m to the right.
+    let mut reduction =
+        Reduction::of(&subject().scene, Some(Place { sensor: SensorId::Beam(0), i: 32, j: 2 }));
+    reduction.beams[0].scene_from_sensor = Pose::IDENTITY;
+    reduction.camera.scene_from_sensor = Pose::from_position(DVec3::new(10.0, 0.0, 0.0));
+    let wall = [[-5.0, -5.0, 10.0], [-5.0, 9.0, 10.0], [9.0, -5.0, 10.0]];
+    // Beside the ray at 6 and 3 m; between the wall and the camera; and twice at one place.
+    let spots =
+        [[-6.0, 0.0, 5.0], [-3.0, 0.0, 5.0], [5.0, 0.0, 5.0], [-4.0, 0.0, 5.0], [-4.0, 0.0, 5.0]].map(spot);
+    let triangles = [[spots[0], spots[1], spots[2], spots[3]], [spots[4], wall, spots[2], spots[0]]].concat();
+    reduction.mesh = mesh_of(&triangles, &[0; 8], &[0.5]);
+    let order = faces_by_distance(&reduction).unwrap();
+    // What the pencil meets, what might hide it, then by the distance from the ray; of equals the lower one first.
+    assert_eq!(order, [5, 2, 6, 1, 3, 4, 0, 7]);
+    // For a pixel nothing but its ray counts.
+    reduction.place = Some(Place { sensor: SensorId::Camera, i: 0, j: 0 });
+    reduction.camera.sensor.principal_point = [0.5, 0.5];
+    reduction.camera.scene_from_sensor = Pose::IDENTITY;
+    assert_eq!(faces_by_distance(&reduction).unwrap(), [5, 1, 3, 4, 2, 6, 0, 7]);
+}
+
+#[test]
+fn a_cell_of_a_grid_gets_a_short_size() {
+    // Three columns and five rows: halves and thicknesses of short cells are no short numbers themselves.
+    let mut reduction = Reduction::of(&subject().scene, None);
+    let beam = &mut reduction.beams[0].sensor;
+    (beam.columns, beam.rows, beam.half_width, beam.thickness) = (3, 5, 0.07, 0.0123);
+    let is_near = |a: f64, b: f64| (a / b - 1.0).abs() < 0.02;
+    let is_interesting = |scene: &Scene, _: Option<Place>| {
+        let beam = &scene.beams()[0].sensor;
+        is_near(beam.half_width, 0.07) && is_near(beam.thickness, 0.0123)
+    };
+    let mut reducer = Reducer::begin(reduction, &is_interesting, MINIMISE_BUDGET, &Silent).unwrap();
+    shorten_numbers(&mut reducer);
+    let beam = reducer.best().beams[0].sensor;
+    for cell in [beam.half_width / 3.0, beam.thickness / 5.0] {
+        assert!(cell.to_bits().trailing_zeros() >= 52 - 8, "{cell} has more than eight digits");
+    }
+}
+
+#[test]
+fn vertices_are_shortened_one_by_one_while_there_are_few() {
+    for (faces, is_shortened) in [(8, true), (9, false)] {
+        let mut triangles: Vec<_> = (0..faces).map(|k| spot([0.7, 0.3, 5.0 + k as f32])).collect();
+        triangles[0][0][0] = 1.0 / 3.0;
+        let mut reduction = Reduction::of(&subject().scene, None);
+        reduction.mesh = mesh_of(&triangles, &vec![0; faces], &[0.5]);
+        // One vertex must keep all its digits, so that all together cannot be shortened.
+        let is_interesting = |scene: &Scene, _: Option<Place>| scene.mesh().vertices()[0][0] == 1.0 / 3.0;
+        let mut reducer = Reducer::begin(reduction, &is_interesting, MINIMISE_BUDGET, &Silent).unwrap();
+        shorten_numbers(&mut reducer);
+        let last = reducer.best().mesh.vertices()[3 * faces - 1];
+        assert_eq!(last == [0.0; 3], is_shortened, "{faces} faces: {last:?}");
+    }
+}
+
+#[test]
+fn faces_keep_their_material_when_unused_ones_are_left_out() {
+    let mut reduction = Reduction::of(&subject().scene, None);
+    let triangles: Vec<_> = (0..4).map(|k| spot([0.0, 0.0, 5.0 + k as f32])).collect();
+    reduction.mesh = mesh_of(&triangles, &[3, 1, 3, 4], &[0.1, 0.2, 0.3, 0.4, 0.5]);
+    let reflectivities = |mesh: &Mesh| -> Vec<f64> {
+        let kinds = mesh.face_materials().iter();
+        kinds.map(|kind| mesh.materials()[usize::from(*kind)].reflectivity).collect()
+    };
+    let is_interesting = |scene: &Scene, _: Option<Place>| {
+        // All of one material is another change, which this refuses.
+        let found = reflectivities(scene.mesh());
+        found == [0.4, 0.2, 0.4, 0.5]
+    };
+    let mut reducer = Reducer::begin(reduction, &is_interesting, MINIMISE_BUDGET, &Silent).unwrap();
+    simplify_values(&mut reducer);
+    let mesh = &reducer.best().mesh;
+    assert_eq!((mesh.materials().len(), reflectivities(mesh)), (3, vec![0.4, 0.2, 0.4, 0.5]));
 }
 
 #[test]
