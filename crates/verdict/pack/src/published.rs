@@ -175,6 +175,34 @@ mod tests {
     }
 
     #[test]
+    fn a_version_and_a_licence_have_as_many_characters_as_there_is_room_for() {
+        for (room, place) in [(MAX_VERSION_CHARS, "version"), (MAX_LICENCE_CHARS, "licence")] {
+            let label = |length: usize| {
+                let text = Some("1".repeat(length));
+                match place {
+                    "version" => PackLabel { version: text, licence: None },
+                    _ => PackLabel { version: None, licence: text },
+                }
+            };
+            assert_eq!(label(room).check(), Ok(()), "{place}");
+            assert!(label(room + 1).check().is_err(), "{place}");
+        }
+    }
+
+    #[test]
+    fn every_digit_of_a_published_digest_counts() {
+        for published in PUBLISHED {
+            for digit in 0..64 {
+                let mut digits: Vec<char> = published.sha256.chars().collect();
+                digits[digit] = if digits[digit] == '0' { '1' } else { '0' };
+                let forged = PackIdentity::new(digits.into_iter().collect(), published.name, PackLabel::NONE);
+                assert!(!forged.is_published(), "{} {}, digit {digit}", published.name, published.version);
+                assert!(forged.words().contains("which is not that of"), "{}", forged.words());
+            }
+        }
+    }
+
+    #[test]
     fn a_pack_of_a_published_name_with_another_digest_is_told_apart() {
         let published = PUBLISHED[0];
         let own = PackIdentity::new(published.sha256.into(), published.name, PackLabel::NONE);

@@ -78,6 +78,15 @@ fn counts_add_up_over_terrains_and_scenes() {
     let merged = made_up([990, 6, 2, 0, 1, 1], vec![wrong_ray()]);
     assert_eq!((merged.compared(), merged.passes()), (2 * 4 * 1000, false));
     assert!(made_up([1000, 0, 0, 0, 0, 0], Vec::new()).passes());
+    assert!(made_up([900, 50, 40, 10, 0, 0], Vec::new()).passes());
+    // One that could not be decided, and one that is wrong.
+    assert!(!made_up([999, 0, 0, 0, 1, 0], vec![wrong_ray()]).passes());
+    assert!(!made_up([999, 0, 0, 0, 0, 1], vec![wrong_ray()]).passes());
+    let json: Value = serde_json::from_str(&campaign_json(&merged)).unwrap();
+    let all = &json["all"];
+    assert_eq!([&all["compared"], &all["hits"], &all["judged"]], [8000, 2 * 4 * 500, 2 * 4 * 12]);
+    let own = &json["parts"]["own"];
+    assert_eq!([&own["compared"], &own["hits"], &own["judged"]], [2000, 2 * 500, 2 * 12]);
     assert!(!made_up([0; 6], Vec::new()).passes());
 }
 
@@ -126,6 +135,66 @@ fn the_summary_keeps_to_its_schema() {
     total.remove("judged");
     total.insert("surplus".into(), Value::Null);
     assert_eq!(schema_faults(&schema, &summary).len(), 2);
+}
+
+#[test]
+fn the_worst_is_the_first_of_the_largest_and_no_number_is_larger_than_all() {
+    let worst = |values: [Option<f64>; 4]| -> Value {
+        let mut merged = made_up([1000, 0, 0, 0, 0, 0], Vec::new());
+        merged.terrains.push(TerrainRecord { terrain: 2, ..merged.terrains[0].clone() });
+        merged.terrains.push(TerrainRecord { terrain: 3, ..merged.terrains[0].clone() });
+        for (record, value) in merged.terrains.iter_mut().zip(values) {
+            record.parts.truncate(1);
+            for slot in [&mut record.parts[0].quantities[0]]
+                .into_iter()
+                .flat_map(|one| [&mut one.worst_error, &mut one.worst_ratio])
+            {
+                slot.as_mut().unwrap().value = value;
+            }
+        }
+        let json: Value = serde_json::from_str(&campaign_json(&merged)).unwrap();
+        let quantity = &json["all"]["quantities"][0];
+        assert_eq!(quantity["worst_error"]["terrain"], quantity["worst_ratio"]["terrain"]);
+        quantity["worst_error"]["terrain"].clone()
+    };
+    assert_eq!(worst([Some(1.0), Some(3.0), Some(3.0), Some(2.0)]), 1);
+    assert_eq!(worst([Some(0.0); 4]), 0);
+    // A value that is not finite is written as null.
+    assert_eq!(worst([Some(1.0), Some(1e300), None, Some(2.0)]), 2);
+    assert_eq!(worst([None, Some(1e300), None, Some(2.0)]), 0);
+}
+
+#[test]
+fn only_all_of_the_wrong_rays_are_a_hundred_per_cent() {
+    let share = |explained: u64, wrong: u64| {
+        let mut merged = made_up([990, 6, 0, 0, 0, 4], vec![wrong_ray()]);
+        merged.campaign = merged.campaign.hunting("my {pack} {out}").expect("a command");
+        merged.terrains[0].parts[0].reasons = vec![ReasonRecord {
+            mistakes: vec!["scaled".into()],
+            clause: "lengths are times 2".into(),
+            wrong,
+            explained,
+            right: 9,
+            broken: 0,
+        }];
+        let screen = campaign_screen(&merged).split_whitespace().collect::<Vec<_>>().join(" ");
+        let (before, _) = screen.split_once(" % of them agree if lengths").expect("a reason");
+        before.rsplit(' ').next().unwrap_or_default().to_string()
+    };
+    assert_eq!(share(1_000_000, 1_000_000), "100");
+    assert_eq!(share(999_999, 1_000_000), "99.99");
+    assert_eq!(share(2, 3), "66.66");
+}
+
+#[test]
+fn the_command_that_runs_it_again_has_its_options_in_their_units() {
+    let mut merged = made_up([1000, 0, 0, 0, 0, 0], Vec::new());
+    merged.campaign = merged.campaign.hunting("my {pack} {out}").expect("a command");
+    (merged.campaign.candidate_ms, merged.campaign.max_faces) = (Some(1500), Some(900));
+    let page = page(&merged, &[]);
+    for option in ["--terrains 2 ", "--max-faces 900 ", "--seed 5 ", "--timeout 1.5 "] {
+        assert!(page.contains(option), "{option}: {page}");
+    }
 }
 
 /// The page of a campaign that was written into a folder with these files in its folder `wrong`.

@@ -189,6 +189,103 @@ fn any_flipped_bit_of_a_record_makes_its_terrain_run_again() {
     assert!(read().unwrap_err().to_string().contains("seed 6"));
 }
 
+#[test]
+fn every_digit_of_a_seal_counts_and_what_made_a_record_is_under_it() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("terrain-000003.json");
+    write_sealed(&file, &campaign(), &record(3), Some(&this())).unwrap();
+    let clean: serde_json::Value = serde_json::from_slice(&std::fs::read(&file).unwrap()).unwrap();
+    let read = |changed: &serde_json::Value| {
+        std::fs::write(&file, changed.to_string()).unwrap();
+        earlier_record(&file, &campaign(), 3).unwrap().0
+    };
+    assert_eq!(read(&clean), Some(record(3)));
+    for digit in 0..64 {
+        let mut changed = clean.clone();
+        let mut digits: Vec<char> = clean["sha256"].as_str().unwrap().chars().collect();
+        digits[digit] = if digits[digit] == '0' { '1' } else { '0' };
+        changed["sha256"] = digits.into_iter().collect::<String>().into();
+        assert_eq!(read(&changed), None, "digit {digit}");
+    }
+    // Each part that stands beside the digest, changed without it.
+    let left = serde_json::json!([{ "name": "wrong/terrain-000003-own.toml", "sha256": "0".repeat(64) }]);
+    let parts: [(&str, &str, serde_json::Value); 4] = [
+        ("made", "program", "f".repeat(64).into()),
+        ("made", "left", left),
+        ("contents", "faces", 3.into()),
+        ("campaign", "max_faces", 2.into()),
+    ];
+    for (part, key, value) in parts {
+        let mut changed = clean.clone();
+        changed[part][key] = value;
+        assert_ne!(changed, clean, "{part}.{key}");
+        assert_eq!(read(&changed), None, "{part}.{key}");
+    }
+}
+
+#[test]
+fn a_record_is_kept_while_all_that_decides_it_is_the_same() {
+    let asked = || campaign().hunting("true {pack} {out}").unwrap();
+    let of_asked = |terrain: u64| {
+        let mut record = record(terrain);
+        record.parts.retain(|part| part.part != PartName::Paper);
+        record
+    };
+    let kept = |own: Campaign, now: &Campaign| {
+        checked_record((own, of_asked(3)), Path::new("a.json"), now, 3).unwrap() == Some(of_asked(3))
+    };
+    assert!(kept(asked(), &asked()));
+    let other_file = |sha256: &str| InputFile { name: "program".into(), sha256: sha256.repeat(64) };
+    let changes: [fn(&mut Campaign); 4] = [
+        |campaign| campaign.candidate_ms = Some(1500),
+        |campaign| campaign.partial = true,
+        |campaign| campaign.arithmetic = Some(raypencil_pack::Arithmetic::F32),
+        |campaign| campaign.candidate_ms = Some(1_800_001),
+    ];
+    for (number, change) in changes.into_iter().enumerate() {
+        let mut changed = asked();
+        change(&mut changed);
+        assert!(!kept(asked(), &changed) && !kept(changed.clone(), &asked()), "{number}");
+        assert!(kept(changed.clone(), &changed), "{number}");
+    }
+    let with = |sha256: &str| Campaign { candidate_files: vec![other_file(sha256)], ..asked() };
+    assert!(kept(with("a"), &with("a")) && !kept(with("a"), &with("b")) && !kept(with("a"), &asked()));
+    // Half an hour is what it has where nothing is said.
+    assert!(kept(Campaign { candidate_ms: Some(1_800_000), ..asked() }, &asked()));
+}
+
+#[test]
+fn parts_of_two_divisions_are_not_one_campaign() {
+    let folder = TempDir::new().unwrap();
+    let write = |index, count| {
+        let shard = Shard { index, count };
+        let terrains = shard.terrains(&campaign()).map(record).collect();
+        write_sealed(&result_file(folder.path(), shard), &campaign(), &ShardResult { shard, terrains }, None)
+            .unwrap();
+    };
+    // All terrains are there: 0 and 2 of the halves, 1 and 3 of the quarters.
+    write(0, 2);
+    write(1, 4);
+    write(3, 4);
+    let error = merge(&[folder.path().to_path_buf()], COMMIT).unwrap_err().to_string();
+    assert!(error.contains("in 4 shards; expected") && error.contains("in 2 shards, as in"), "{error}");
+}
+
+#[test]
+fn counts_at_their_limits_are_taken() {
+    let mut full = record(0);
+    let part = &mut full.parts[0];
+    part.by_class[Class::Agree as usize] -= MAX_DESCRIBED_RAYS as u64;
+    part.by_class[Class::Defect as usize] += MAX_DESCRIBED_RAYS as u64;
+    part.wrong = vec![part.wrong[0].clone(); MAX_DESCRIBED_RAYS];
+    part.hits = part.compared + part.not_compared;
+    assert_eq!(check_record(&full, &campaign()), Ok(()));
+    // A ground of as many faces as --max-faces is small enough; of one more nothing but its lattice is run.
+    let bounded = Campaign { max_faces: Some(7), ..campaign() };
+    assert!(bounded.parts_of(7).eq(PartName::ALL));
+    assert!(bounded.parts_of(8).eq([PartName::Lattice]));
+}
+
 #[cfg(unix)]
 #[test]
 fn what_is_no_file_is_not_waited_for() {

@@ -10,3 +10,4 @@ mod packs;
 mod reported;
 mod returns;
 mod shortest_range;
+mod written;

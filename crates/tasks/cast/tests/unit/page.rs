@@ -114,3 +114,116 @@ fn what_finds_no_room_is_named() {
     assert_eq!(names, ["range.T", "face.I", "ray", "P.X", "P.Y", "P.Z", "incidence.V", "side"]);
     assert_eq!(words, "Not among the maps for want of room: faces at this t, t, N.X, N.Y, N.Z.");
 }
+
+/// The numbers of both sides of a channel.
+fn of_sides(channel: &RasterChannel) -> Vec<Option<Vec<f64>>> {
+    match channel {
+        RasterChannel::Reals(sides) => {
+            let side = |cells: &Vec<f32>| cells.iter().map(|cell| f64::from(*cell)).collect();
+            sides.iter().map(|cells| cells.as_ref().map(side)).collect()
+        }
+        RasterChannel::Wholes(sides) => {
+            let side = |cells: &Vec<u32>| cells.iter().map(|cell| f64::from(*cell)).collect();
+            sides.iter().map(|cells| cells.as_ref().map(side)).collect()
+        }
+    }
+}
+
+#[test]
+fn each_side_of_a_page_shows_its_own_numbers() {
+    use crate::{Questions, cast, compare};
+    use raypencil_scene::{FaceId, Precision, Silent};
+
+    let corners = vec![[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0]];
+    let mesh = Triangles::new(corners, vec![[0, 1, 2]]).unwrap();
+    // Directions of length 2.5; the first ray meets the front and the second the back.
+    let ray =
+        |x: f64, z: f64, up: f64| CastRay::new(glam::DVec3::new(x, 1.0, z), glam::DVec3::new(1.5, 0.0, up));
+    let rays = [ray(0.5, 3.0, -2.0), ray(0.25, -1.0, 2.0)];
+    let margins = Questions { margins: true, ..Questions::default() };
+    let mut answers = cast(&mesh, &rays, Sides::Both, margins, &Silent);
+    for (margins, by) in answers.margins.iter_mut().flatten().zip([0.5, 0.25]) {
+        (margins.face.lo, margins.surface.lo) = (by * margins.face.hi, 0.75 * by * margins.surface.hi);
+    }
+    let exact = Stated::of(&answers);
+    // Another program, every number of which is another one.
+    let other = |numbers: &Option<Vec<f64>>, by: f64| {
+        numbers.as_ref().map(|all| all.iter().map(|x| x + by).collect())
+    };
+    let others = |vectors: &Option<Vec<glam::DVec3>>, by: f64| {
+        vectors
+            .as_ref()
+            .map(|all| all.iter().map(|v| *v + glam::DVec3::new(by, 2.0 * by, 3.0 * by)).collect())
+    };
+    let stated = Stated {
+        face: Some(vec![Some(FaceId(7)), None]),
+        t: other(&exact.t, 0.25),
+        range: other(&exact.range, 0.5),
+        side: Some(vec![Some(Side::Back), Some(Side::Front)]),
+        point: others(&exact.point, 0.125),
+        normal: others(&exact.normal, 0.0625),
+        cos_incidence: other(&exact.cos_incidence, 0.75),
+        ..exact.clone()
+    };
+    let comparison = compare(&mesh, &rays, Sides::Both, &stated, Precision::F64, &Silent);
+    let shown = |stated: &Stated| {
+        let compared = ComparedHits {
+            name: "mine",
+            stated,
+            comparison: &comparison,
+            ray_command: &|ray| ray.to_string(),
+        };
+        let page = CastPage {
+            title: "two rays",
+            facts: &[],
+            shape: &[2],
+            rays: &rays,
+            answers: &answers,
+            mesh: None,
+            set: None,
+            scan: None,
+            compared: Some(compared),
+        };
+        let (layout, mut found) = (page.layout(), std::collections::BTreeMap::new());
+        for (name, unit, channel) in page.channels(&layout) {
+            let sides = of_sides(&channel).into_iter().map(|cells| cells.map(|cells| cells[..2].to_vec()));
+            found.insert(name, (unit, sides.collect::<Vec<_>>()));
+        }
+        found
+    };
+    let found = shown(&stated);
+    let single = |numbers: &Option<Vec<f64>>| -> Option<Vec<f64>> {
+        numbers.as_ref().map(|all| all.iter().map(|x| f64::from(*x as f32)).collect())
+    };
+    let part = |vectors: &Option<Vec<glam::DVec3>>, axis: usize| {
+        single(&vectors.as_ref().map(|all| all.iter().map(|v| v[axis]).collect()))
+    };
+    let none = f64::from(u32::MAX);
+    let mut expected = vec![
+        ("range.T", "m", single(&exact.range), single(&stated.range)),
+        ("t", "", single(&exact.t), single(&stated.t)),
+        ("face.I", "", Some(vec![0.0, 0.0]), Some(vec![7.0, none])),
+        ("side", "", Some(vec![1.0, -1.0]), Some(vec![-1.0, 1.0])),
+        ("incidence.V", "", single(&exact.cos_incidence), single(&stated.cos_incidence)),
+        ("ray", "", Some(vec![0.0, 1.0]), Some(vec![0.0, 1.0])),
+        ("faces at this t", "", Some(vec![1.0, 1.0]), None),
+    ];
+    for (axis, [point, normal]) in [["P.X", "N.X"], ["P.Y", "N.Y"], ["P.Z", "N.Z"]].into_iter().enumerate() {
+        expected.push((point, "m", part(&exact.point, axis), part(&stated.point, axis)));
+        expected.push((normal, "", part(&exact.normal, axis), part(&stated.normal, axis)));
+    }
+    // Of a margin the lower bound: no ray that is moved by less has another answer.
+    let margins = answers.margins.as_ref().unwrap();
+    let faces = single(&Some(margins.iter().map(|margins| margins.face.lo).collect()));
+    let surfaces = single(&Some(margins.iter().map(|margins| margins.surface.lo).collect()));
+    expected.push(("margin to another face", "m", faces, None));
+    expected.push(("margin to another surface", "m", surfaces, None));
+    assert_eq!(found.len(), expected.len());
+    for (name, unit, exact, other) in expected {
+        assert_eq!(found[name], (unit, vec![exact, other]), "{name}");
+    }
+    // Of a program that gives t alone the range follows from it, as a length.
+    let of_t = Stated { range: None, ..stated.clone() };
+    let lengths = of_t.t.as_ref().map(|all| all.iter().map(|t| 2.5 * t).collect());
+    assert_eq!(shown(&of_t)["range.T"].1[1], single(&lengths));
+}

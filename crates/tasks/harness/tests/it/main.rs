@@ -5,4 +5,5 @@ mod formats;
 mod output;
 mod reports;
 mod summary_schema;
+mod verdicts;
 mod warnings;

@@ -1,6 +1,8 @@
 //! Arrays come back as they were put in, by a reader written from the format's words.
 
 use super::*;
+use crate::{DifferingCell, RasterChannel, RasterGroup, RasterPage, SideKind};
+use raypencil_judge::Class;
 
 /// Undoes deflate and the steps of a reference.
 fn read(scripts: &str, reference: &Value) -> Vec<u32> {
@@ -84,4 +86,122 @@ fn what_is_the_same_beside_another_takes_hardly_any_bytes() {
     assert_eq!(read(&scripts, &second.reference), others);
     // Of what is beside something else in turn.
     assert_eq!(read(&scripts, &third.reference), numbers);
+}
+
+/// The model of a page.
+fn model_of(html: &str) -> Value {
+    let (_, rest) = html.split_once("id=\"page-model\">").expect("a model");
+    serde_json::from_str(rest.split_once("</script>").expect("its end").0).expect("JSON")
+}
+
+#[test]
+fn a_page_of_two_sides_and_two_groups_keeps_every_cell_where_it_was() {
+    let nan = f32::NAN;
+    let reals = [
+        [vec![1.0, 2.0, nan, 4.0, 5.0, 6.0], vec![1.0, 2.5, 3.0, nan, 5.0, -6.0]],
+        [vec![7.0, 8.0], vec![9.0, 8.0]],
+    ];
+    let wholes = [
+        [vec![1, 2, u32::MAX, 4, 5, 6], vec![1, 3, u32::MAX, 7, 5, 6]],
+        [vec![0, u32::MAX], vec![u32::MAX, 0]],
+    ];
+    let sizes = [(3, 2), (1, 2)];
+    let differing = |cell, channel, class| DifferingCell { cell, channel, class };
+    let of_groups = [
+        vec![differing(1, 0, Class::Defect), differing(3, 1, Class::Rounding)],
+        vec![differing(0, 1, Class::Tie), differing(1, 2, Class::Defect)],
+    ];
+    let names = [["range.T", "face.I", "one side"], ["depth.Z", "pixel.I", "other side"]];
+    let described = [vec![(3, "of the first".to_string())], vec![(1, "of the second".to_string())]];
+    let groups: Vec<RasterGroup> = (0..2)
+        .map(|k: usize| RasterGroup {
+            name: ["camera", "beam-0"][k].into(),
+            size: sizes[k],
+            axes: None,
+            channels: vec![
+                (names[k][0].into(), "m".into(), RasterChannel::Reals(reals[k].clone().map(Some).into())),
+                (
+                    names[k][1].into(),
+                    String::new(),
+                    RasterChannel::Wholes(wholes[k].clone().map(Some).into()),
+                ),
+                (names[k][2].into(), "s".into(), RasterChannel::Reals(vec![None, Some(reals[k][0].clone())])),
+            ],
+            differing: of_groups[k].clone(),
+            described: described[k].clone(),
+        })
+        .collect();
+    let sides = [("mine", SideKind::Candidate), ("yours", SideKind::Candidate)];
+    let page = RasterPage {
+        kind: "diff",
+        title: "mine and yours",
+        sides: &sides,
+        classes: ["equal", "tie", "rounding", "approximation", "undecided", "differs"],
+        groups: &groups,
+        described_words: "",
+        solid: None,
+    };
+    let html = page.html();
+    let model = model_of(&html);
+    for k in 0..2 {
+        let sensor = &model["sensors"][k];
+        for side in 0..2 {
+            let stored = |channel: &str| read(&html, &sensor["sides"][side]["channels"][channel]["stored"]);
+            assert_eq!(stored(names[k][0]), reals[k][side].iter().map(|x| x.to_bits()).collect::<Vec<_>>());
+            assert_eq!(stored(names[k][1]), wholes[k][side]);
+        }
+        assert!(sensor["sides"][0]["channels"][names[k][2]].is_null());
+        let yours = read(&html, &sensor["sides"][1]["channels"][names[k][2]]["stored"]);
+        assert_eq!(yours, reals[k][0].iter().map(|x| x.to_bits()).collect::<Vec<_>>());
+        let [classes, quantities] = ["class", "quantity"].map(|of| read(&html, &sensor["pairs"][0][of]));
+        for (cell, (class, quantity)) in classes.iter().zip(&quantities).enumerate() {
+            let known = of_groups[k].iter().find(|one| one.cell as usize == cell);
+            assert_eq!(*class, known.map_or(Class::Agree, |one| one.class) as u32, "{k} {cell}");
+            let name = model["quantities"].get(*quantity as usize).map(|one| one["name"].clone());
+            let channel = known.map(|one| Value::from(groups[k].channels[one.channel].0.as_str()));
+            assert_eq!(name, channel, "{k} {cell}");
+        }
+        // The quantities of a group are its own, with their units.
+        let differs = known_quantity(&model, &quantities, of_groups[k][0].cell);
+        assert_eq!(differs, groups[k].channels[of_groups[k][0].channel].1.as_str());
+    }
+    let told: Vec<u8> = read(&html, &model["rays"]).into_iter().map(|byte| byte as u8).collect();
+    let told: Value = serde_json::from_slice(&told).expect("JSON");
+    let places: Vec<_> = told
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|one| (one["sensor"].as_u64(), one["cell"].as_u64(), one["text"].as_str()))
+        .collect();
+    assert_eq!(places, [(Some(0), Some(3), Some("of the first")), (Some(1), Some(1), Some("of the second"))]);
+}
+
+#[test]
+fn each_margin_of_a_page_has_its_own_numbers() {
+    let margins = crate::RayMargins {
+        cells: vec![1, 3, 700],
+        face: vec![0.125, 0.25, 0.5],
+        surface: vec![0.75, 1.0, 0.625],
+        visibility: vec![0.0625, f32::NAN, 0.375],
+        landing: vec![f32::NAN, 0.875, 0.3125],
+    };
+    let mut arrays = Arrays::default();
+    let model = margins.model(&mut arrays);
+    let scripts = arrays.scripts();
+    assert_eq!(read(&scripts, &model["cells"]), margins.cells);
+    for (name, values) in [
+        ("face", &margins.face),
+        ("surface", &margins.surface),
+        ("visibility", &margins.visibility),
+        ("landing", &margins.landing),
+    ] {
+        let bits: Vec<u32> = values.iter().map(|value| value.to_bits()).collect();
+        assert_eq!(read(&scripts, &model[name]), bits, "{name}");
+    }
+}
+
+/// The unit of the quantity in which a cell differs.
+fn known_quantity(model: &Value, quantities: &[u32], cell: u32) -> String {
+    let index = quantities[cell as usize] as usize;
+    model["quantities"][index]["unit"].as_str().expect("a unit").to_string()
 }

@@ -4,7 +4,10 @@ use std::path::{Path, PathBuf};
 
 use raypencil_files::{Limits, Values, read_npy, write_npy};
 use raypencil_judge::{Class, GroundTruth, ListedDefect, Quantity, Recorded, check};
-use raypencil_pack::{Checked, FileRole, Manifest, PackKind, check_pack, write_document, write_questions};
+use raypencil_pack::{
+    BundleFindings, Checked, Declarations, FileRole, Manifest, PackKind, check_pack, write_document,
+    write_questions,
+};
 use raypencil_scanline::Scanline;
 use raypencil_scene::{Precision, Renderer, Request, Silent};
 use raypencil_scene_io::{Overrides, Subject, load};
@@ -179,6 +182,89 @@ fn the_json_keeps_to_its_schema() {
     assert_eq!(schema_faults(&schema, &faulty), Vec::<String>::new());
     let depth = &faulty["bundles"][0]["quantities"][3];
     assert_eq!((&depth["quantity"], &depth["not_given"]), (&"depth".into(), &"not given".into()));
+}
+
+/// The verdict in all its forms: what the exit code follows, the word for programs, the words for people, the sign.
+fn verdict(checked: &Checked) -> (bool, String, String, String) {
+    let document = checked.document();
+    let json: Value = serde_json::from_str(&document.json()).unwrap();
+    let word = json["verdict"].as_str().expect("a word").to_string();
+    (checked.passes(), word, document.headline.clone(), document.outcome.sign().to_string())
+}
+
+#[test]
+fn what_could_not_be_decided_is_no_pass() {
+    let mut checked = perfect();
+    let camera = &mut checked.check.sensors[0];
+    (camera.by_class[Class::Agree as usize], camera.by_class[Class::Undecided as usize]) =
+        (camera.by_class[Class::Agree as usize] - 3, 3);
+    let (passes, word, headline, sign) = verdict(&checked);
+    assert_eq!((passes, word.as_str(), sign.as_str()), (false, "defects", "✗"));
+    assert!(headline.contains(" 3 undecided"), "{headline}");
+    assert!(checked.document().screen().contains("✗"));
+}
+
+#[test]
+fn a_set_of_rays_that_hits_nothing_is_no_pass_beside_sensors_that_hit() {
+    let set = |name: &str, hits_anything: bool| {
+        let mut bundle = BundleFindings::not_given(format!("rays/{name}"), 0);
+        bundle.by_class[Class::Agree as usize] = 40;
+        bundle.hits_anything = hits_anything;
+        bundle
+    };
+    let with = |ray_sets: Vec<BundleFindings>| verdict(&Checked { ray_sets, ..perfect() });
+    let (passes, word, ..) = with(vec![set("head", true)]);
+    assert_eq!((passes, word.as_str()), (true, "agrees"));
+    for sets in [vec![set("head", false)], vec![set("head", true), set("roof", false)]] {
+        let (passes, word, _, sign) = with(sets);
+        assert_eq!((passes, word.as_str(), sign.as_str()), (false, "nothing_hit", "?"));
+    }
+    // One that is not given is not asked.
+    let (passes, word, ..) = with(vec![BundleFindings::not_given("rays/head".into(), 40)]);
+    assert_eq!((passes, word.as_str()), (true, "agrees"));
+}
+
+#[test]
+fn the_verdict_says_of_a_pack_that_nobody_has_published_that_it_is_none() {
+    let words = |checked: &Checked| verdict(checked).2;
+    assert!(!words(&perfect()).contains("not published"), "{}", words(&perfect()));
+    let mut forged = perfect();
+    forged.pack.sha256 = "0123456789ab".repeat(6)[..64].into();
+    assert!(
+        words(&forged).ends_with(" (By a pack that is not published: sha256 0123456789ab...)"),
+        "{}",
+        words(&forged)
+    );
+    // Whose answers are computed needs no word of anybody.
+    forged.has_answers = false;
+    assert!(!words(&forged).contains("not published"));
+}
+
+#[test]
+fn what_is_declared_now_counts_more_than_a_note_which_still_says_the_rest() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let note = r#"{"format": 1, "program": "P", "arithmetic": "f32", "scale": 0.001, "miss": -1,
+        "channels": {"range.T": "far", "depth.Z": "deep", "face.I": "id"}}"#;
+    std::fs::write(folder.path().join("candidate.json"), note).expect("a file");
+    let channel = |text: &str| text.parse().expect("a channel");
+    let with = |declared: Declarations| declared.with_note_of(folder.path()).expect("a note");
+    let noted = with(Declarations::default());
+    assert_eq!((noted.precision(), noted.scale, noted.miss), (Precision::F32, Some(0.001), Some(-1.0)));
+    let all = ["range.T=far", "depth.Z=deep", "face.I=id"].map(channel);
+    assert_eq!(noted.channels, all);
+    let declared = Declarations {
+        precision: Some(Precision::F64),
+        miss: Some(0.0),
+        scale: Some(0.01),
+        channels: vec![channel("depth.Z=other")],
+        ..Declarations::default()
+    };
+    let both = with(declared.clone());
+    assert_eq!((both.precision(), both.scale, both.miss), (Precision::F64, Some(0.01), Some(0.0)));
+    assert_eq!(both.channels, ["depth.Z=other", "range.T=far", "face.I=id"].map(channel));
+    // Without a note all is as it is declared.
+    let elsewhere = tempfile::tempdir().expect("a temporary folder");
+    assert_eq!(declared.clone().with_note_of(elsewhere.path()).expect("no note"), declared);
 }
 
 #[test]

@@ -136,6 +136,18 @@ fn files_that_were_changed_are_named() {
 }
 
 #[test]
+fn every_digit_of_a_digest_counts() {
+    for digit in 0..64 {
+        let message = changed(|m| {
+            let mut digits: Vec<char> = m["files"][0]["sha256"].as_str().unwrap().chars().collect();
+            digits[digit] = if digits[digit] == '0' { '1' } else { '0' };
+            m["files"][0]["sha256"] = digits.into_iter().collect::<String>().into();
+        });
+        assert!(message.starts_with("PACK/scene.toml: SHA-256: "), "digit {digit}: {message}");
+    }
+}
+
+#[test]
 fn folders_without_a_valid_manifest_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let none = "PACK: pack: no manifest.json; expected a folder with manifest.json (is this a pack?)";
