@@ -186,7 +186,8 @@ fn storing_a_range_widens_its_own_bound_and_storing_a_point_those_of_point_and_t
     let range = |stated: &mut Stated| stated.range.as_mut().unwrap()[0] += 1e-3;
     let t = |stated: &mut Stated| stated.t.as_mut().unwrap()[0] += 5e-4;
     let point = |stated: &mut Stated| stated.point.as_mut().unwrap()[0].x += 1e-3;
-    let changes: [(&dyn Fn(&mut Stated), bool); 3] = [(&range, true), (&t, false), (&point, false)];
+    type Change<'c> = &'c dyn Fn(&mut Stated);
+    let changes: [(Change<'_>, bool); 3] = [(&range, true), (&t, false), (&point, false)];
     for (change, is_range) in changes {
         assert_eq!(wrong(change), 1);
         for (of_range, size) in [(true, 1.001e-3), (true, 0.999e-3), (false, 1.001e-3), (false, 0.999e-3)] {
