@@ -145,7 +145,7 @@ impl Run {
         }
         // `FAILED crates/doors/python/tests/test_judge.py::test_it[one] - AssertionError`
         let failed = |line: &str| {
-            let (test, _) = line.strip_prefix("FAILED ")?.split_once([' ', '['])?;
+            let test = line.strip_prefix("FAILED ")?.split([' ', '[']).next()?;
             Some(test.rsplit('/').next()?.replace(".py::", "::"))
         };
         let mut tests: Vec<String> =
