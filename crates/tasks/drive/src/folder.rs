@@ -90,7 +90,7 @@ pub fn write_drive(
     write_npy(named("local-map-error.npy"), &[&error_image(&run.map)])?;
     write_atomically(named("local-map-keys.txt"), |file| file.write_all(key_lines(&run.map).as_bytes()))?;
     write_npy(named("local-map-source.npy"), &[&source_image(&run.map)])?;
-    write_geotiff(named("local-map.tif"), &height_grid(&run.map))?;
+    write_geotiff(named("local-map.tif"), &height_grid(&run.map), job.map_code)?;
     write_ply(named("edge-points.ply"), &run.points)?;
     let maps = [
         "local-map.npy",

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
+use raypencil_mesh_io::DemFacts;
 use raypencil_rover::{Detection, DrivePlan, Rig};
 use raypencil_scene::{Camera, FluxModel, Image, Mesh, SceneError};
 use raypencil_scene_io::{DriveSetup, LoadedScene, SceneSource, WaypointFrame};
@@ -61,6 +62,8 @@ pub struct DriveJob {
     pub sunlight: Option<Sunlight>,
     /// Whether an image without the laser is subtracted from each image.
     pub subtract_unlit: bool,
+    /// EPSG code of the map in which the ground lies, if it has one in metres.
+    pub map_code: Option<u16>,
     /// Whether the scene asks for a camera: a sensor preset, optics, electronics or a sun.
     pub has_camera: bool,
     /// Threshold of images of flux, as a share of their maximum.
@@ -188,6 +191,7 @@ impl DriveJob {
             sensor: drive.sensor,
             sunlight: drive.sunlight,
             subtract_unlit: drive.subtract_unlit,
+            map_code: loaded.file_facts.dem().and_then(DemFacts::metric_map_code),
             has_camera: drive.has_camera,
             threshold_share: drive.threshold_share,
             notes,

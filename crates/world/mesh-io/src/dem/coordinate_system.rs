@@ -46,6 +46,13 @@ pub struct AxisSystem {
     pub source: UnitSource,
 }
 
+impl AxisSystem {
+    /// Its EPSG code, if it has one and is in metres.
+    pub fn metric_code(&self) -> Option<u16> {
+        self.code.filter(|_| self.unit.unit == METRE && !self.unit.is_depth)
+    }
+}
+
 /// Units that the caller gives, over what the file says.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct GivenUnits {

@@ -111,6 +111,11 @@ impl DemFacts {
         (self.map.name.is_some() || self.map.code.is_some()).then(|| name(&self.map))
     }
 
+    /// EPSG code of the coordinate system of x and y, if the file has one and it is in metres, as all places of a scene are.
+    pub fn metric_map_code(&self) -> Option<u16> {
+        self.map.metric_code()
+    }
+
     /// The systems and units in one line.
     pub fn words(&self) -> String {
         format!(

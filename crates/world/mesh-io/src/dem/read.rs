@@ -78,7 +78,7 @@ impl From<Option<[f64; 4]>> for DemOptions {
 /// let path = folder.path().join("dem.tif");
 /// let (corner, spacing) = (DVec2::new(10.0, 20.0), DVec2::splat(0.5));
 /// let heights = vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
-/// write_geotiff(&path, &HeightGrid { columns: 3, rows: 2, corner, spacing, heights })?;
+/// write_geotiff(&path, &HeightGrid { columns: 3, rows: 2, corner, spacing, heights }, None)?;
 ///
 /// // Columns are at x = 10, 10.5 and 11: the window from 10.2 has the last two.
 /// let dem = read_dem(&path, Some([10.2, 20.0, 1.0, 0.5]))?;

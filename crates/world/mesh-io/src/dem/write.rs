@@ -9,30 +9,40 @@ use tiff::encoder::TiffEncoder;
 use tiff::encoder::colortype::Gray64Float;
 use tiff::tags::Tag;
 
-/// Geo keys: a user-defined projection, pixels that are points, metres along all axes.
-const GEO_KEYS: [u16; 24] = [
-    // Version 1.1.0, five keys.
-    1, 1, 0, 5, //
-    1024, 0, 1, 1, // GTModelTypeGeoKey: projected
-    1025, 0, 1, 2, // GTRasterTypeGeoKey: PixelIsPoint
-    3072, 0, 1, 32767, // ProjectedCRSGeoKey: user-defined
-    3076, 0, 1, 9001, // ProjLinearUnitsGeoKey: metre
-    4099, 0, 1, 9001, // VerticalUnitsGeoKey: metre
-];
+use crate::dem::geo_keys::USER_DEFINED;
+
+/// Geo keys: this projected system, pixels that are points, metres along all axes.
+fn geo_keys(system: u16) -> [u16; 24] {
+    [
+        // Version 1.1.0, five keys.
+        1, 1, 0, 5, //
+        1024, 0, 1, 1, // GTModelTypeGeoKey: projected
+        1025, 0, 1, 2, // GTRasterTypeGeoKey: PixelIsPoint
+        3072, 0, 1, system, // ProjectedCRSGeoKey
+        3076, 0, 1, 9001, // ProjLinearUnitsGeoKey: metre
+        4099, 0, 1, 9001, // VerticalUnitsGeoKey: metre
+    ]
+}
 
 /// Writes posts as a GeoTIFF with one band of f64, metres, the northernmost row first.
 ///
-/// Pixels are points: the tie point is at a post. Unknown heights are NaN, which the file declares as no data.
+/// Pixels are points: the tie point is at a post. Unknown heights are NaN, which the file declares as no data. `system` is the EPSG
+/// code of the projected system, in metres, in which the posts lie; `None`: the file says that it is nobody's.
 ///
 /// # Errors
 /// An error of the file system or of the encoder, with the path.
-pub fn write_geotiff(path: impl AsRef<Path>, posts: &HeightGrid) -> Result<(), FileError> {
+pub fn write_geotiff(
+    path: impl AsRef<Path>,
+    posts: &HeightGrid,
+    system: Option<u16>,
+) -> Result<(), FileError> {
     let path = path.as_ref();
-    let bytes = encode(posts).map_err(|error| FileError::io(path, "write", std::io::Error::other(error)))?;
+    let bytes =
+        encode(posts, system).map_err(|error| FileError::io(path, "write", std::io::Error::other(error)))?;
     write_atomically(path, |file| file.write_all(&bytes))
 }
 
-fn encode(posts: &HeightGrid) -> tiff::TiffResult<Vec<u8>> {
+fn encode(posts: &HeightGrid, system: Option<u16>) -> tiff::TiffResult<Vec<u8>> {
     let mut file = Cursor::new(Vec::new());
     let mut encoder = TiffEncoder::new(&mut file)?;
     let mut image = encoder.new_image::<Gray64Float>(posts.columns, posts.rows)?;
@@ -40,7 +50,7 @@ fn encode(posts: &HeightGrid) -> tiff::TiffResult<Vec<u8>> {
     let tags = image.encoder();
     tags.write_tag(Tag::ModelPixelScaleTag, [posts.spacing.x, posts.spacing.y, 0.0].as_slice())?;
     tags.write_tag(Tag::ModelTiepointTag, [0.0, 0.0, 0.0, posts.corner.x, north, 0.0].as_slice())?;
-    tags.write_tag(Tag::GeoKeyDirectoryTag, GEO_KEYS.as_slice())?;
+    tags.write_tag(Tag::GeoKeyDirectoryTag, geo_keys(system.unwrap_or(USER_DEFINED)).as_slice())?;
     tags.write_tag(Tag::GdalNodata, "nan")?;
     let rows = posts.heights.chunks_exact(posts.columns as usize).rev();
     let heights: Vec<f64> = rows.flatten().copied().collect();
@@ -66,7 +76,11 @@ mod tests {
         };
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("map.tif");
-        write_geotiff(&path, &posts).unwrap();
+        // UTM zone 33 N, and none.
+        write_geotiff(&path, &posts, Some(32633)).unwrap();
+        assert_eq!(read_dem(&path, None).unwrap().map.metric_code(), Some(32633));
+        write_geotiff(&path, &posts, None).unwrap();
+        assert_eq!(read_dem(&path, None).unwrap().map.metric_code(), None);
         let dem = read_dem(&path, None).unwrap();
         assert_eq!((dem.registration, dem.unknown), (Registration::Point, 1));
         assert!(dem.nodata.is_some_and(f64::is_nan));
