@@ -128,6 +128,7 @@ fn add_run(digest: &mut Fingerprint, plan: &DrivePlan, run: &DriveRun) {
         digest.counts(vectors.iter().map(|vector| vector.label as u64));
     }
     add_truth(digest, &run.truth);
+    add_truth(digest, &run.upper_bound);
 }
 
 fn add_map(digest: &mut Fingerprint, map: &ElevationMap) {

@@ -49,6 +49,9 @@ impl Rates {
 /// Bytes that `drive` takes for each cell of its optics: the image, and what a blur makes of it.
 const FINE_CELL: u64 = 32;
 
+/// Maximum number of these cells.
+const MAX_FINE_CELLS: u64 = 1 << 28;
+
 /// Bytes that `cast` takes for each ray, and for each face.
 const CAST: [u64; 2] = [800, 380];
 
@@ -97,6 +100,10 @@ pub(crate) fn ask_drive(scene: &Scene, oversampling: u32) -> Result<(), Trouble>
     let (columns, rows) = scene.size(SensorId::Camera).unwrap_or((0, 0));
     let side = u64::from(oversampling);
     let cells = u64::from(columns) * u64::from(rows) * side * side;
+    // A larger image is refused as such, with its place in the file.
+    if cells > MAX_FINE_CELLS {
+        return Ok(());
+    }
     let words = format!("{} of optics with oversampling {side}", counted(cells, "cell", "cells"));
     refuse_above("drive", needed(Rates::DRIVE.base, &[(cells, FINE_CELL)]), &words)
 }
