@@ -47,7 +47,7 @@ impl Rates {
 }
 
 /// Bytes that `drive` takes for each cell of its optics: the image, and what a blur makes of it.
-const FINE_CELL: u64 = 32;
+const FINE_CELL: u64 = 10;
 
 /// Maximum number of these cells.
 const MAX_FINE_CELLS: u64 = 1 << 28;
@@ -84,38 +84,39 @@ fn of_machine() -> Option<u64> {
 
 /// Refuses work on a scene for which the memory is not there.
 pub(crate) fn ask(rates: Rates, scene: &Scene) -> Result<(), Trouble> {
+    refuse_scene(rates, counts(scene), None)
+}
+
+/// Refuses a drive for which the memory is not there: for its scene, and for the cells of its optics, `oversampling` along the side of
+/// each pixel.
+pub(crate) fn ask_drive(scene: &Scene, oversampling: u32) -> Result<(), Trouble> {
+    let [faces, pixels, pencils] = counts(scene);
+    let side = u64::from(oversampling);
+    // More cells than an image may have are refused as such, with their place in the file.
+    let cells = Some(pixels * side * side).filter(|cells| side > 1 && *cells <= MAX_FINE_CELLS);
+    refuse_scene(Rates::DRIVE, [faces, pixels, pencils], cells)
+}
+
+/// Faces, pixels of the camera, and pencils of all beams.
+fn counts(scene: &Scene) -> [u64; 3] {
     let cells = |sensor: SensorId| {
         scene.size(sensor).map_or(0, |(columns, rows)| u64::from(columns) * u64::from(rows))
     };
-    let faces = scene.mesh().faces().len() as u64;
-    let pixels = cells(SensorId::Camera);
     let pencils = scene.sensors().filter(|sensor| *sensor != SensorId::Camera).map(cells).sum();
-    refuse_scene(rates, faces, pixels, pencils)
+    [scene.mesh().faces().len() as u64, cells(SensorId::Camera), pencils]
 }
 
-/// Refuses a drive for which the memory is not there: for its scene, or for the cells of its optics, `oversampling` along the side of
-/// each pixel.
-pub(crate) fn ask_drive(scene: &Scene, oversampling: u32) -> Result<(), Trouble> {
-    ask(Rates::DRIVE, scene)?;
-    let (columns, rows) = scene.size(SensorId::Camera).unwrap_or((0, 0));
-    let side = u64::from(oversampling);
-    let cells = u64::from(columns) * u64::from(rows) * side * side;
-    // A larger image is refused as such, with its place in the file.
-    if cells > MAX_FINE_CELLS {
-        return Ok(());
-    }
-    let words = format!("{} of optics with oversampling {side}", counted(cells, "cell", "cells"));
-    refuse_above("drive", needed(Rates::DRIVE.base, &[(cells, FINE_CELL)]), &words)
-}
-
-fn refuse_scene(rates: Rates, faces: u64, pixels: u64, pencils: u64) -> Result<(), Trouble> {
+/// `cells`: those of optics.
+fn refuse_scene(rates: Rates, [faces, pixels, pencils]: [u64; 3], cells: Option<u64>) -> Result<(), Trouble> {
     let Rates { command, base, face, pixel, pencil } = rates;
-    let parts = [(faces, face), (pixels, pixel), (pencils, pencil)];
+    let parts = [(faces, face), (pixels, pixel), (pencils, pencil), (cells.unwrap_or(0), FINE_CELL)];
     let words = [
-        counted(faces, "face", "faces"),
-        counted(pixels, "pixel", "pixels"),
-        counted(pencils, "pencil", "pencils"),
+        Some(counted(faces, "face", "faces")),
+        Some(counted(pixels, "pixel", "pixels")),
+        Some(counted(pencils, "pencil", "pencils")),
+        cells.map(|cells| counted(cells, "cell of its optics", "cells of its optics")),
     ];
+    let words: Vec<String> = words.into_iter().flatten().collect();
     refuse_above(command, needed(base, &parts), &words.join(", "))
 }
 
@@ -129,7 +130,7 @@ pub(crate) fn ask_check(pack: &Path) -> Result<(), Trouble> {
     // A face takes 18 bytes of the file or more: three indices, and half a vertex.
     let terrain = manifest.files.iter().filter(|file| file.role == FileRole::Terrain);
     let faces = terrain.map(|file| file.bytes / 18).sum();
-    refuse_scene(Rates::CHECK, faces, cells(true), cells(false))
+    refuse_scene(Rates::CHECK, [faces, cells(true), cells(false)], None)
 }
 
 /// Refuses rays on a mesh for which the memory is not there.

@@ -117,6 +117,18 @@ fn many_pencils_take_the_memory_that_is_said() {
 }
 
 #[test]
+fn cells_of_optics_take_the_memory_that_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    // 256 x 256 pixels of 16 x 16 cells, and a blur that brings light to most of them.
+    let text = "version = 1\nvehicle = { position_m = [-0.6, 0] }\n\
+                camera = { width_px = 256, height_px = 256, pixel_pitch_um = 36 }\n[terrain]\nbuiltin = \"pyramids\"\n[drive]\n\
+                waypoints_m = [[0.1, 0]]\nscans = false\nsensor = \"cmos\"\n\
+                optics = { oversampling = 16, blurs = [{ gaussian_px = 30 }] }\n";
+    std::fs::write(folder.path().join("fine.toml"), text).unwrap();
+    assert_said_is_taken(folder.path(), &["drive", "fine.toml", "-o", "out"]);
+}
+
+#[test]
 fn casting_takes_the_memory_that_it_says() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
