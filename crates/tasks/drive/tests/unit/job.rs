@@ -317,3 +317,25 @@ fn columns_that_a_drive_chooses_are_even() {
         }
     }
 }
+
+#[test]
+fn the_code_of_the_grounds_map_is_that_of_the_drive() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("ground.tif");
+    let corner = DVec2::new(500_000.0, 5_400_000.0);
+    let posts = raypencil_terrain::HeightGrid {
+        columns: 31,
+        rows: 31,
+        corner,
+        spacing: DVec2::ONE,
+        heights: vec![0.0; 31 * 31],
+    };
+    for code in [Some(32633), None] {
+        raypencil_mesh_io::write_geotiff(&file, &posts, code).unwrap();
+        let ground =
+            format!("[vehicle]\nposition_m = [500015, 5400015]\n[terrain]\ndem = '{}'", file.display());
+        let loaded = load_text(&scene_text("", 2, &ground, SHORT), "map").expect("a scene");
+        let job = DriveJob::new(&loaded, None, "map.toml".into()).expect("a drive");
+        assert_eq!(job.map_code, code);
+    }
+}
