@@ -128,7 +128,7 @@ impl Fault {
     }
 
     /// The same fault inside a part of its file.
-    pub(crate) fn inside(self, part: &str) -> Self {
+    pub fn inside(self, part: &str) -> Self {
         Self { place: format!("{part}, {}", self.place), ..self }
     }
 

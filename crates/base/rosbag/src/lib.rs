@@ -1,5 +1,5 @@
 //! Bags of ROS 2: an MCAP file with the definitions of its messages, and the `metadata.yaml` of rosbag2 beside it.
-//! Nothing of ROS is needed to write them, and `ros2 bag`, RViz, Foxglove and Python read them. The poses of any program's bag are read.
+//! Nothing of ROS is needed to write them, and `ros2 bag`, RViz, Foxglove and Python read them. The poses and the point clouds of any program's bag are read.
 //!
 //! Internal to raypencil: any version may change its items. The crate `raypencil` is the door.
 //!
@@ -8,7 +8,9 @@
 //! definitions    their texts, which the bag carries along
 //! bag            the bag itself
 //! metadata       its metadata.yaml
-//! poses          read from the bags of any program: where a frame is
+//! records, cdr   what is in the bag of any program, and the values of its messages
+//! poses          where a frame is, by such a bag
+//! clouds         a point cloud of such a bag
 //! ```
 //!
 //! ```
@@ -35,12 +37,16 @@
 //! (MCAP specification 1.0; OMG CDR 1.0 as ROS 2 encodes it, little endian; rosbag2 metadata, version 5)
 
 mod bag;
+mod cdr;
+mod clouds;
 mod definitions;
 mod messages;
 mod metadata;
 mod poses;
+mod records;
 
 pub use bag::{BagWriter, Topic};
+pub use clouds::{BagCloud, CloudChoice, largest_point_cloud, read_point_cloud};
 pub use messages::{
     Bytes, CameraInfo, Clock, Header, Image, MapMetaData, Message, OccupancyGrid, Odometry, Point,
     PointCloud2, PointField, Pose, PoseWithCovariance, Quaternion, RegionOfInterest, Stamp, TfMessage,

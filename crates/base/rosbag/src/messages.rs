@@ -154,8 +154,12 @@ pub struct PointField {
 }
 
 impl PointField {
+    /// Signed whole number of a byte.
+    pub const INT8: u8 = 1;
     /// Whole number of a byte.
     pub const UINT8: u8 = 2;
+    /// Signed whole number of two bytes.
+    pub const INT16: u8 = 3;
     /// Whole number of two bytes.
     pub const UINT16: u8 = 4;
     /// Signed whole number of four bytes.

@@ -3,25 +3,14 @@
 use std::collections::BTreeMap;
 use std::io::Read;
 
-use mcap::McapError;
-use mcap::records::{Record, op};
-use mcap::sans_io::decompressor::{DecompressResult, Decompressor};
-use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
+use mcap::records::Record;
 use raypencil_files::Fault;
-use ruzstd::decoding::FrameDecoder;
+
+use crate::cdr::Cdr;
+use crate::records::{MAX_LISTED, each_record};
 
 /// Maximum number of poses of all topics together.
 const MAX_POSES: usize = 1 << 22;
-
-/// Maximum length of a record, bytes: an image of 64 million pixels has as much.
-const MAX_RECORD_BYTES: u64 = 1 << 28;
-
-/// How often a record that is compressed may be as long as the whole file. A byte of LZ4 stands for 255 at most; of Zstandard, which knows no
-/// such limit, tuned.
-const MAX_EXPANSION: u64 = 256;
-
-/// How many series of poses a message lists.
-const MAX_LISTED: usize = 8;
 
 /// Pose of one frame in another, and when.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -96,36 +85,6 @@ pub fn read_poses(stream: impl Read, length: u64, choice: &PoseChoice<'_>) -> Re
     let mut found = Found::default();
     each_record(stream, length, |record| found.take(record, choice))?;
     found.only(choice)
-}
-
-/// Hands over the records of an MCAP file, those of chunks one by one.
-fn each_record(
-    mut stream: impl Read,
-    length: u64,
-    mut take: impl FnMut(Record<'_>) -> Result<(), Fault>,
-) -> Result<(), Fault> {
-    let broken =
-        |error: McapError| Fault::new("file", error.to_string(), "a whole MCAP file, as rosbag2 writes it");
-    let most = length.saturating_mul(MAX_EXPANSION).min(MAX_RECORD_BYTES) as usize;
-    let options =
-        LinearReaderOptions::default().with_validate_chunk_crcs(true).with_record_length_limit(most);
-    let mut reader = LinearReader::new_with_options(options);
-    reader.add_decompressor(Zstandard::default()).map_err(broken)?;
-    while let Some(event) = reader.next_event() {
-        match event.map_err(broken)? {
-            LinearReadEvent::ReadRequest(wanted) => {
-                let read = stream.read(reader.insert(wanted));
-                reader.notify_read(read.map_err(|error| broken(McapError::Io(error)))?);
-            }
-            LinearReadEvent::Record { data, opcode }
-                if matches!(opcode, op::SCHEMA | op::CHANNEL | op::MESSAGE) =>
-            {
-                take(mcap::parse_record(opcode, data).map_err(broken)?)?;
-            }
-            LinearReadEvent::Record { .. } => {}
-        }
-    }
-    Ok(())
 }
 
 /// What was found so far.
@@ -247,94 +206,4 @@ fn poses_of(kind: Kind, data: &[u8], message: u64) -> Result<Vec<(String, String
         ));
     }
     Ok(poses)
-}
-
-/// CDR of ROS 2: each number stands at a multiple of its size behind the first four bytes. (OMG DDSI-RTPS 2.3, 10.2; CDR 1.0)
-struct Cdr<'a> {
-    data: &'a [u8],
-    at: usize,
-    is_little: bool,
-}
-
-impl<'a> Cdr<'a> {
-    fn new(data: &'a [u8]) -> Result<Self, String> {
-        let is_little = match data {
-            [0, 0, _, _, ..] => false,
-            [0, 1, _, _, ..] => true,
-            [a, b, _, _, ..] => return Err(format!("the representation {a:#04x} {b:#04x}")),
-            _ => return Err(format!("{} bytes", data.len())),
-        };
-        Ok(Self { data: &data[4..], at: 0, is_little })
-    }
-
-    fn bytes(&mut self, count: usize) -> Result<&'a [u8], String> {
-        let end = self.at.checked_add(count).filter(|end| *end <= self.data.len());
-        let end = end.ok_or_else(|| format!("{} bytes, which end within a value", self.data.len() + 4))?;
-        let bytes = &self.data[self.at..end];
-        self.at = end;
-        Ok(bytes)
-    }
-
-    /// The bytes of a number, the lowest first.
-    fn number<const N: usize>(&mut self) -> Result<[u8; N], String> {
-        self.at = self.at.next_multiple_of(N);
-        let mut number = [0; N];
-        number.copy_from_slice(self.bytes(N)?);
-        if !self.is_little {
-            number.reverse();
-        }
-        Ok(number)
-    }
-
-    fn word(&mut self) -> Result<u32, String> {
-        Ok(u32::from_le_bytes(self.number()?))
-    }
-
-    fn real(&mut self) -> Result<f64, String> {
-        Ok(f64::from_le_bytes(self.number()?))
-    }
-
-    /// A text, whose length counts the zero at its end.
-    fn text(&mut self) -> Result<String, String> {
-        let length = self.word()? as usize;
-        let bytes = self.bytes(length)?;
-        let text = bytes.strip_suffix(&[0]).unwrap_or(bytes);
-        std::str::from_utf8(text).map(String::from).map_err(|_| "a name of a frame that is no text".into())
-    }
-
-    /// Seconds.
-    fn stamp(&mut self) -> Result<f64, String> {
-        let seconds = i32::from_le_bytes(self.number()?);
-        match self.word()? {
-            nanoseconds @ 0..1_000_000_000 => Ok(f64::from(seconds) + f64::from(nanoseconds) / 1e9),
-            more => Err(format!("a stamp of {more} nanoseconds beside its seconds")),
-        }
-    }
-}
-
-/// Decompressor of chunks with Zstandard.
-#[derive(Default)]
-struct Zstandard(FrameDecoder);
-
-impl Decompressor for Zstandard {
-    fn next_read_size(&self) -> usize {
-        0
-    }
-
-    fn decompress(&mut self, source: &[u8], target: &mut [u8]) -> Result<DecompressResult, McapError> {
-        let (consumed, wrote) = self
-            .0
-            .decode_from_to(source, target)
-            .map_err(|error| McapError::DecompressionError(error.to_string()))?;
-        Ok(DecompressResult { consumed, wrote })
-    }
-
-    fn reset(&mut self) -> Result<(), McapError> {
-        self.0 = FrameDecoder::new();
-        Ok(())
-    }
-
-    fn name(&self) -> &'static str {
-        "zstd"
-    }
 }

@@ -29,7 +29,8 @@
 //!       stl, obj, npy_pair                    a format each
 //!       ply: header -> numbers                elements and types, and the numbers of either kind
 //!       read                                  which format a file has, and triangles as `f64`
-//! cloud  columns, lzf -> pcd, read            fields of a point cloud; PCD, and PLY by the parts above
+//! cloud  columns -> packed                    fields of a point cloud, and their numbers in bytes
+//!       lzf -> pcd, read                      PCD, and PLY by the parts above
 //! file_frame, file_facts -> terrain           axes and units of a file, what it says of them, and terrain from any mesh
 //! ```
 //!
@@ -64,7 +65,8 @@ mod terrain;
 pub mod triangles;
 
 pub use cloud::{
-    Cloud, CloudColumn, CloudStorage, claimed_points, cloud_from_bytes, is_cloud_file, read_cloud,
+    Cloud, CloudColumn, CloudStorage, PackedField, PackedKind, PackedPoints, claimed_points,
+    cloud_from_bytes, is_cloud_file, read_cloud,
 };
 pub use dem::{
     AxisSystem, Dem, DemFacts, DemOptions, HeightUnit, LengthUnit, NoData, Registration, SpikeFacts, Spikes,

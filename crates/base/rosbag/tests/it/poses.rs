@@ -61,7 +61,7 @@ fn several_series_of_poses_are_told_apart_by_topic_or_frames() {
 }
 
 /// A bag with these messages of one topic.
-fn bag(schema: &str, encoding: &str, messages: &[Vec<u8>]) -> Vec<u8> {
+pub(super) fn bag(schema: &str, encoding: &str, messages: &[Vec<u8>]) -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
     let options = WriteOptions::new().compression(Some(Compression::Lz4));
     let mut writer = options.create(&mut bytes).expect("a bag");
@@ -120,7 +120,7 @@ fn what_is_no_bag_of_poses_is_refused() {
         (bag(POSE, "cdr", &[vec![0, 1]]), "message 1 of /at: 2 bytes; expected the CDR of"),
         (bag(POSE, "cdr", &[changed(1, 7)]), "message 1 of /at: the representation 0x00 0x07"),
         (bag(POSE, "cdr", &[changed(11, 0xff)]), "a stamp of "),
-        (bag(POSE, "cdr", &[changed(17, 0xff)]), "a name of a frame that is no text"),
+        (bag(POSE, "cdr", &[changed(17, 0xff)]), "a name that is no text"),
         (bag(POSE, "cdr", &[changed(15, 0xff)]), "which end within a value"),
         (bag("tf2_msgs/msg/TFMessage", "cdr", &[many]), "which end within a value"),
         (

@@ -1,12 +1,14 @@
-//! Point clouds as other programs write them: PCD and PLY.
+//! Point clouds as other programs write them: PCD, PLY, and points as bytes.
 //!
 //! CHOICE: PCD has a small parser of its own. `pcd-rs` knows no compressed files, and its errors name no place.
 
 mod columns;
 mod lzf;
+mod packed;
 mod pcd;
 mod read;
 
 pub(crate) use columns::decimals;
 pub use columns::{Cloud, CloudColumn, CloudStorage};
+pub use packed::{PackedField, PackedKind, PackedPoints};
 pub use read::{claimed_points, cloud_from_bytes, is_cloud_file, read_cloud};

@@ -4,6 +4,7 @@ use raypencil_files::Fault;
 
 use super::columns::{Cloud, CloudColumn, CloudStorage, check_names, decimals};
 use super::lzf;
+use super::packed::{PackedField, PackedKind, PackedPoints, check_fields};
 
 /// Maximum number of fields.
 const MAX_FIELDS: usize = 1024;
@@ -11,56 +12,9 @@ const MAX_FIELDS: usize = 1024;
 /// Maximum bytes of the header.
 const MAX_HEADER_BYTES: usize = 1 << 20;
 
-/// A field, as the header declares it.
-struct Field {
-    name: String,
-    /// Bytes of a number: 1, 2, 4 or 8.
-    size: usize,
-    /// I, U or F.
-    kind: u8,
-    /// Numbers of a point; only fields of one are kept.
-    count: usize,
-}
-
-impl Field {
-    fn bytes(&self) -> usize {
-        self.size * self.count
-    }
-
-    /// Whether it is a field that somebody may ask for. `_` is padding.
-    fn is_kept(&self) -> bool {
-        self.count == 1 && self.name != "_"
-    }
-
-    fn storage(&self) -> CloudStorage {
-        match (self.kind, self.size) {
-            (b'F', 4) => CloudStorage::Single,
-            (b'F', _) => CloudStorage::Double,
-            _ => CloudStorage::Whole,
-        }
-    }
-
-    /// The number of these bytes, little endian.
-    fn number(&self, bytes: &[u8]) -> f64 {
-        let mut word = [0; 8];
-        word[..self.size].copy_from_slice(bytes);
-        let bits = u64::from_le_bytes(word);
-        match (self.kind, self.size) {
-            (b'F', 4) => f64::from(f32::from_bits(bits as u32)),
-            (b'F', _) => f64::from_bits(bits),
-            (b'U', _) => bits as f64,
-            _ => {
-                // Sign extension: the sign bit is moved to the top and back.
-                let shift = 64 - 8 * self.size;
-                ((bits << shift) as i64 >> shift) as f64
-            }
-        }
-    }
-}
-
 /// What the lines before the numbers say.
 struct Header {
-    fields: Vec<Field>,
+    fields: Vec<PackedField>,
     width: u64,
     height: u64,
     points: u64,
@@ -143,7 +97,7 @@ fn fields(
     sizes: Option<Vec<String>>,
     kinds: Option<Vec<String>>,
     counts: Option<Vec<String>>,
-) -> Result<Vec<Field>, Fault> {
+) -> Result<Vec<PackedField>, Fault> {
     if names.len() > MAX_FIELDS {
         return Err(Fault::new("FIELDS", format!("{} names", names.len()), format!("at most {MAX_FIELDS}")));
     }
@@ -158,16 +112,16 @@ fn fields(
         Err(Fault::new(key, format!("{} words", list.len()), format!("{}, one for each field", names.len())))
     });
     let (sizes, kinds, counts) = (sizes?, kinds?, counts?);
-    let mut fields: Vec<Field> = Vec::new();
+    let mut fields: Vec<PackedField> = Vec::new();
     for (index, name) in names.into_iter().enumerate() {
         let size = sizes[index].parse().ok().filter(|size| [1, 2, 4, 8].contains(size));
         let kind = match kinds[index].as_str() {
-            "I" => Some(b'I'),
-            "U" => Some(b'U'),
-            "F" => Some(b'F'),
+            "I" => Some(PackedKind::Signed),
+            "U" => Some(PackedKind::Unsigned),
+            "F" => Some(PackedKind::Real),
             _ => None,
         };
-        let is_type = |size: usize, kind: u8| kind != b'F' || size >= 4;
+        let is_type = |size: usize, kind: PackedKind| kind != PackedKind::Real || size >= 4;
         let (Some(size), Some(kind)) =
             (size, kind.filter(|kind| size.is_some_and(|size| is_type(size, *kind))))
         else {
@@ -182,47 +136,31 @@ fn fields(
                 "1 to 65536",
             ));
         };
-        if name != "_" && fields.iter().any(|other| other.name == name) {
-            return Err(Fault::new(format!("field `{name}`"), "a second one", "each field once"));
-        }
-        fields.push(Field { name, size, kind, count });
+        let offset = fields.last().map_or(0, |last| last.offset + last.bytes());
+        fields.push(PackedField { name, offset, kind, size, count });
     }
-    match fields.iter().find(|field| ["x", "y", "z"].contains(&field.name.as_str()) && field.count != 1) {
-        Some(field) => Err(Fault::new(
-            format!("field `{}`", field.name),
-            format!("COUNT {}", field.count),
-            "a single number",
-        )),
-        None => Ok(fields),
-    }
+    check_fields(&fields)?;
+    Ok(fields)
 }
 
 pub(super) fn read(file: &[u8], keeps: impl Fn(&str) -> bool) -> Result<Cloud, Fault> {
     let header = header(file)?;
     let body = &file[header.start..];
-    let keeps = |field: &Field| field.is_kept() && keeps(&field.name);
+    let keeps_name = &keeps;
+    let keeps = |field: &PackedField| field.is_kept() && keeps_name(&field.name);
     let columns = match header.data.as_str() {
         "ascii" => of_text(&header, body, keeps)?,
         "binary" => {
-            let stride: usize = header.fields.iter().map(Field::bytes).sum();
-            let bytes = of_size(&header, body, stride as u64)?;
-            let mut offset = 0;
-            let mut columns = Vec::new();
-            for field in &header.fields {
-                if keeps(field) {
-                    let number = |point: &[u8]| field.number(&point[offset..offset + field.size]);
-                    columns.push(CloudColumn {
-                        name: field.name.clone(),
-                        storage: field.storage(),
-                        values: bytes.chunks_exact(stride).map(number).collect(),
-                    });
-                }
-                offset += field.bytes();
-            }
-            columns
+            let point_step: usize = header.fields.iter().map(PackedField::bytes).sum();
+            let data = of_size(&header, body, point_step as u64)?;
+            let row_step = point_step * header.width as usize;
+            let size = [header.width, header.height];
+            let fields = &header.fields;
+            let points = PackedPoints { fields, size, point_step, row_step, is_big_endian: false, data };
+            points.cloud(keeps_name)?.columns
         }
         _ => {
-            let stride: usize = header.fields.iter().map(Field::bytes).sum();
+            let stride: usize = header.fields.iter().map(PackedField::bytes).sum();
             let word = |at: usize| -> Option<u64> {
                 Some(u64::from(u32::from_le_bytes(body.get(at..at + 4)?.try_into().ok()?)))
             };
@@ -262,7 +200,7 @@ pub(super) fn read(file: &[u8], keeps: impl Fn(&str) -> bool) -> Result<Cloud, F
                         storage: field.storage(),
                         values: bytes[start..end]
                             .chunks_exact(field.size)
-                            .map(|bytes| field.number(bytes))
+                            .map(|bytes| field.number(bytes, false))
                             .collect(),
                     });
                 }
@@ -287,7 +225,11 @@ fn of_size<'a>(header: &Header, body: &'a [u8], stride: u64) -> Result<&'a [u8],
     }
 }
 
-fn of_text(header: &Header, body: &[u8], keeps: impl Fn(&Field) -> bool) -> Result<Vec<CloudColumn>, Fault> {
+fn of_text(
+    header: &Header,
+    body: &[u8],
+    keeps: impl Fn(&PackedField) -> bool,
+) -> Result<Vec<CloudColumn>, Fault> {
     let width: usize = header.fields.iter().map(|field| field.count).sum();
     // A digit and a blank, or the end of the line, for each number.
     let least = (2 * width as u64).checked_mul(header.points);
