@@ -1,7 +1,8 @@
 //! `raypencil check`: another program's answers against a reference pack.
 
+use raypencil::cast::{CloudChoice, CloudConventions, is_bag_of_clouds, is_cloud};
 use raypencil::harness::{check_any_pack, pack_form};
-use raypencil::io::{OutputFolder, is_cloud_file};
+use raypencil::io::OutputFolder;
 use raypencil::pack::{Declarations, PackForm, Verification};
 
 use crate::args::Check;
@@ -37,7 +38,9 @@ fn checked(command: &Check, json: bool) -> Result<Outcome, Trouble> {
         PackForm::Rays => memory::ask_check_rays(&command.pack, &command.candidate)?,
         PackForm::Triangles => {}
     }
-    let declared = (&declarations, command.frame.unwrap_or_default());
+    let choice = CloudChoice { topic: command.topic.as_deref(), message: command.message };
+    let cloud = CloudConventions { frame: command.frame.unwrap_or_default(), choice };
+    let declared = (&declarations, cloud);
     let checked = check_any_pack(&command.pack, &command.candidate, declared, share, &spinner)?;
     if let Some(folder) = &command.output {
         checked.write(folder)?;
@@ -61,9 +64,17 @@ fn refuse_declared(command: &Check) -> Result<(), Trouble> {
         PackForm::Triangles if of_sensors => usage(format!(
             "--channel, --scale: {pack} is an input pack, which asks for triangles.npy; expected neither"
         )),
-        form if command.frame.is_some() && (form != PackForm::Rays || !is_cloud_file(&command.candidate)) => {
+        form if command.frame.is_some() && (form != PackForm::Rays || !is_cloud(&command.candidate)) => {
             usage(format!(
-                "--frame: {} on {pack} is no point cloud (.pcd, .ply) on a pack of rays; expected no --frame",
+                "--frame: {} on {pack} is no point cloud (.pcd, .ply, .mcap) on a pack of rays; expected no --frame",
+                command.candidate.display()
+            ))
+        }
+        form if (command.topic.is_some() || command.message.is_some())
+            && (form != PackForm::Rays || !is_bag_of_clouds(&command.candidate)) =>
+        {
+            usage(format!(
+                "--topic, --message: {} on {pack} is no bag (.mcap) on a pack of rays; expected neither",
                 command.candidate.display()
             ))
         }

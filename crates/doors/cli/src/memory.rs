@@ -8,7 +8,8 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use bytesize::ByteSize;
-use raypencil::io::{bytes, claimed_points, is_cloud_file, limit_memory};
+use raypencil::cast::{is_cloud, stated_points};
+use raypencil::io::{bytes, limit_memory};
 use raypencil::pack::{FileRole, Manifest};
 use raypencil::report::counted;
 use raypencil::{Scene, SensorId};
@@ -153,7 +154,7 @@ pub(crate) fn ask_check_rays(pack: &Path, candidate: &Path) -> Result<(), Troubl
     };
     // Three indices of four bytes, after a header of 128.
     let faces = of_file("faces.npy").unwrap_or(0).saturating_sub(128) / 12;
-    let points = if is_cloud_file(candidate) { claimed_points(candidate).unwrap_or(0) } else { 0 };
+    let points = if is_cloud(candidate) { stated_points(candidate).unwrap_or(0) } else { 0 };
     let [ray, face, point] = CHECK_RAYS;
     let mut words = format!("{}, {}", counted(rays, "ray", "rays"), counted(faces, "face", "faces"));
     if points > 0 {

@@ -4,9 +4,8 @@ use std::path::PathBuf;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use raypencil::cast::CloudFrame;
+use raypencil::cast::{CloudChoice, CloudConventions, CloudFrame, is_bag_of_clouds, is_cloud};
 use raypencil::harness::{CheckedPack, check_any_pack, pack_form};
-use raypencil::io::is_cloud_file;
 use raypencil::pack::{CheckError, Declarations, PackForm, Verification};
 
 use crate::array::Arrays;
@@ -22,6 +21,9 @@ struct Question {
     declared: Declarations,
     /// The frame of a point cloud.
     frame: Option<CloudFrame>,
+    /// The topic of a bag, and which of its clouds.
+    topic: Option<String>,
+    message: Option<u64>,
     share: Verification,
     output: Option<PathBuf>,
 }
@@ -40,12 +42,18 @@ struct Answer {
 
 /// Refuses what a pack of this form has no use for.
 fn refuse_declared(question: &Question) -> Result<(), Failure> {
-    let Question { pack, declared, candidate, frame, .. } = question;
+    let Question { pack, declared, candidate, frame, topic, message, .. } = question;
     let form = pack_form(pack);
     let pack = pack.display();
-    if frame.is_some() && (form != PackForm::Rays || !is_cloud_file(candidate)) {
+    if frame.is_some() && (form != PackForm::Rays || !is_cloud(candidate)) {
         return Err(Failure::new(format!(
-            "frame: {} on {pack} is no point cloud (.pcd, .ply) on a pack of rays; expected no frame",
+            "frame: {} on {pack} is no point cloud (.pcd, .ply, .mcap) on a pack of rays; expected no frame",
+            candidate.display()
+        )));
+    }
+    if (topic.is_some() || message.is_some()) && (form != PackForm::Rays || !is_bag_of_clouds(candidate)) {
+        return Err(Failure::new(format!(
+            "topic, message: {} on {pack} is no bag (.mcap) on a pack of rays; expected neither",
             candidate.display()
         )));
     }
@@ -65,10 +73,11 @@ fn refuse_declared(question: &Question) -> Result<(), Failure> {
 
 fn answer(question: &Question, watch: &Watch) -> Result<Answer, Failure> {
     refuse_declared(question)?;
-    let Question { pack, candidate, declared, frame, share, output } = question;
+    let Question { pack, candidate, declared, frame, topic, message, share, output } = question;
+    let choice = CloudChoice { topic: topic.as_deref(), message: *message };
+    let cloud = CloudConventions { frame: frame.unwrap_or_default(), choice };
     let helped = |error: CheckError| Failure::with_help(&error, error.help());
-    let checked = check_any_pack(pack, candidate, (declared, frame.unwrap_or_default()), *share, watch)
-        .map_err(helped)?;
+    let checked = check_any_pack(pack, candidate, (declared, cloud), *share, watch).map_err(helped)?;
     if let Some(folder) = output {
         checked.write(folder)?;
     }
@@ -92,8 +101,8 @@ fn answer(question: &Question, watch: &Watch) -> Result<Answer, Failure> {
 /// Checks a folder of answers against a pack of any kind.
 #[pyfunction]
 #[pyo3(signature = (
-    pack, candidate, channels, scale, arithmetic=None, miss=None, no_faces=false, frame=None, verify=false,
-    output=None, on_stage=None
+    pack, candidate, channels, scale, arithmetic=None, miss=None, no_faces=false, frame=None, topic=None, message=None,
+    verify=false, output=None, on_stage=None
 ))]
 #[allow(clippy::too_many_arguments, reason = "the arguments of a Python function by their names")]
 pub(crate) fn check<'py>(
@@ -106,6 +115,8 @@ pub(crate) fn check<'py>(
     miss: Option<f64>,
     no_faces: bool,
     frame: Option<String>,
+    topic: Option<String>,
+    message: Option<u64>,
     verify: bool,
     output: Option<PathBuf>,
     on_stage: Option<&Bound<'py, PyAny>>,
@@ -126,7 +137,7 @@ pub(crate) fn check<'py>(
         let frame = frame.map(of_word).transpose()?;
         let named = declared(&channels, scale)?;
         let declared = Declarations { precision, miss, ignores_faces: no_faces, ..named };
-        let question = Question { pack, candidate, declared, frame, share, output };
+        let question = Question { pack, candidate, declared, frame, topic, message, share, output };
         answer(&question, watch)
     })?;
     let dict = PyDict::new(py);

@@ -75,9 +75,15 @@ poses = [{ time_s = 0, position_m = [-2, 0.5, 0.5] }, { time_s = 1, position_m =
     for name in names:
         assert (tmp_path / "theirs" / name).read_bytes() == (tmp_path / "ours" / name).read_bytes(), name
     # It knows its scan: a cloud in the sensor's frame is judged.
-    command("cast", DATA / "rays/cube.obj", "scan.toml", "-o", "cast")
+    command("cast", DATA / "rays/cube.obj", "scan.toml", "--bag", "velodyne", "-o", "cast")
     assert check(tmp_path / "ours", tmp_path / "cast/cloud-sensor.pcd", frame="sensor")
     assert not check(tmp_path / "ours", tmp_path / "cast/cloud-sensor.pcd", frame="start")
+    bag = tmp_path / "cast/rosbag/rosbag_0.mcap"
+    assert check(tmp_path / "ours", bag, frame="sensor", topic="/points", message=1)
+    with pytest.raises(RaypencilError, match="topic /points: 1 cloud, and none of number 2; expected 1 to 1"):
+        check(tmp_path / "ours", bag, frame="sensor", message=2)
+    with pytest.raises(RaypencilError, match=r"topic, message: .*cloud-sensor.pcd on .* is no bag"):
+        check(tmp_path / "ours", tmp_path / "cast/cloud-sensor.pcd", topic="/points")
 
 
 def test_several_sets_have_a_pack_each(cube: Mesh, tmp_path: Path) -> None:

@@ -66,12 +66,14 @@ pub use comparison::{
 };
 pub use layout::PageScan;
 pub use pack::{
-    AskedBy, CandidateConventions, CastGround, CloudFacts, RayPackChecked, RayPackCounts, check_ray_pack,
-    check_stated_rays, is_ray_pack, ray_pack_len, read_stated, write_ray_pack, write_scan_pack,
+    AskedBy, CandidateConventions, CastGround, CloudConventions, CloudFacts, RayPackChecked, RayPackCounts,
+    check_ray_pack, check_stated_rays, is_bag_of_clouds, is_cloud, is_ray_pack, ray_pack_len, read_stated,
+    stated_points, write_ray_pack, write_scan_pack,
 };
 pub use page::{CastPage, ComparedHits, write_cast_page};
 pub use range_picture::{range_picture, top_picture};
 pub use raypencil_files::{RayArray, rays_from_bytes, read_rays};
+pub use raypencil_rosbag::CloudChoice;
 pub use returns::{BeamReturn, BeamReturns, Footprint};
 pub use scans::{ScansWritten, write_scans};
 pub use text::{counts_text, ray_json, ray_text};

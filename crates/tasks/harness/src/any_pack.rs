@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use raypencil_cast::{CandidateConventions, CloudFrame, RayPackChecked, check_ray_pack, is_ray_pack};
+use raypencil_cast::{CandidateConventions, CloudConventions, RayPackChecked, check_ray_pack, is_ray_pack};
 use raypencil_files::{FileError, FolderError};
 use raypencil_pack::{
     CheckError, Checked, Declarations, InputChecked, PackForm, Verification, check_input, check_pack_by,
@@ -40,21 +40,21 @@ pub enum CheckedPack {
     Triangles(InputChecked),
 }
 
-/// Checks a candidate against a pack of any form. `frame` is that of a point cloud, which a pack of rays takes too.
+/// Checks a candidate against a pack of any form. `cloud` is declared of a point cloud, which a pack of rays takes too.
 ///
 /// # Errors
 /// As `check_pack_by`, `check_ray_pack` and `check_input`.
 pub fn check_any_pack(
     pack: &Path,
     candidate: &Path,
-    (declarations, frame): (&Declarations, CloudFrame),
+    (declarations, cloud): (&Declarations, CloudConventions<'_>),
     share: Verification,
     progress: &dyn Progress,
 ) -> Result<CheckedPack, CheckError> {
     let conventions = |declared: &Declarations| CandidateConventions {
         miss: declared.miss,
         ignores_faces: declared.ignores_faces,
-        frame,
+        cloud,
     };
     Ok(match pack_form(pack) {
         PackForm::Triangles => CheckedPack::Triangles(check_input(pack, candidate)?),

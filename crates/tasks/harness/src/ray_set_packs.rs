@@ -97,7 +97,7 @@ pub(crate) fn check_packed_ray_sets(
     pack: &Path,
     candidate: &Path,
     precision: Precision,
-    conventions: CandidateConventions,
+    conventions: CandidateConventions<'_>,
     progress: &dyn Progress,
 ) -> Result<Vec<CheckedRaySet>, FileError> {
     // To verify a large pack takes seconds: not for one without sets.

@@ -20,7 +20,9 @@ use crate::parsers::{cloud_frame, number, precision};
   # A depth image of 16 bits in millimetres, camera/depth.Z.png.
   raypencil check data/packs/pyramids my-depths --scale 0.001
   # A driver's point cloud, held to a pack of a LiDAR's scan.
-  raypencil check out/vlp16-pack my.pcd --frame sensor")]
+  raypencil check out/vlp16-pack my.pcd --frame sensor
+  # The third cloud of a simulator's bag.
+  raypencil check out/vlp16-pack my_0.mcap --message 3 --frame sensor")]
 pub(crate) struct Check {
     /// Folder of the reference pack, with its manifest.json, of an input pack, or of a pack of rays.
     #[arg(value_name = "PACK")]
@@ -29,7 +31,7 @@ pub(crate) struct Check {
     /// Folder of the answers to check: EXR, NPY, NPZ, PFM, PNG or TIFF files or a Zarr store, named as docs/formats/files.md
     /// says, or as --channel declares. For an input pack:
     /// triangles.npy, and reflectivity.npy if there is one. For a pack of rays: arrays as `cast` writes them, or a point cloud, a
-    /// .pcd or .ply.
+    /// .pcd, a .ply, or a PointCloud2 of a bag (.mcap).
     #[arg(value_name = "CANDIDATE")]
     pub(crate) candidate: PathBuf,
 
@@ -52,6 +54,14 @@ pub(crate) struct Check {
     /// sensor at the start of its scan. Without it: mesh.
     #[arg(long, value_name = "FRAME", value_parser = cloud_frame())]
     pub(crate) frame: Option<CloudFrame>,
+
+    /// Topic of a bag that has the cloud. Without it: the only one with clouds.
+    #[arg(long, value_name = "TOPIC")]
+    pub(crate) topic: Option<String>,
+
+    /// Which of the topic's clouds, from 1. Without it: the only one.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) message: Option<u64>,
 
     #[command(flatten)]
     pub(crate) declared: DeclaredArguments,

@@ -138,6 +138,8 @@ def check(
     miss: float | None = None,
     no_faces: bool = False,
     frame: Literal["mesh", "sensor", "start"] | None = None,
+    topic: str | None = None,
+    message: int | None = None,
     channels: Mapping[str, str] | None = None,
     scale: float | None = None,
     verify: bool = False,
@@ -150,7 +152,7 @@ def check(
     Args:
         pack: folder of the pack.
         answers: a folder of EXR, NPY, NPZ, PFM, PNG or TIFF files or a Zarr store, or arrays. For a pack of rays: a dictionary with ``face``, ``t``, ..., a
-            :class:`CastResult`, or the path of a point cloud (.pcd, .ply). For a pack of a scene: a dictionary with the channels of docs/formats/files.md, as
+            :class:`CastResult`, or the path of a point cloud (.pcd, .ply, or a bag that has it, .mcap). For a pack of a scene: a dictionary with the channels of docs/formats/files.md, as
             ``"camera/range.T"`` or nested, or a :class:`RenderResult`. For an input pack: ``triangles`` (m, 9) and
             ``reflectivity`` (m,).
         arithmetic: that of the answers, whatever type they are stored in. Default: as the folder's ``candidate.json`` says,
@@ -159,6 +161,8 @@ def check(
         no_faces: leave out the indices of faces.
         frame: of the points of a cloud: that of the mesh (the default), of the sensor when it fires each ray, or of the sensor at
             the start of its scan.
+        topic: of a bag, that of the cloud. Default: the only one with clouds.
+        message: which of the topic's clouds, from 1. Default: the only one.
         channels: which channel of the files is which map, such as ``{"depth.Z": "ViewLayer.Depth.Z"}``. The map says what the
             numbers are: ``depth.Z`` along the optical axis, ``range.T`` along the ray. docs/formats/files.md has the rules; a
             ``candidate.json`` can declare the same.
@@ -179,7 +183,7 @@ def check(
         with stages(progress) as on_stage:
             answer = _raypencil.check(
                 os.fspath(pack), os.fspath(candidate), list((channels or {}).items()), scale, arithmetic, miss, no_faces,
-                frame, verify, folder and os.fspath(folder), on_stage,
+                frame, topic, message, verify, folder and os.fspath(folder), on_stage,
             )
         return CheckResult(answer, folder)
 

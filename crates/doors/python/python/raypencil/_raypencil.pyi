@@ -226,6 +226,8 @@ def check(
     miss: float | None = None,
     no_faces: bool = False,
     frame: str | None = None,
+    topic: str | None = None,
+    message: int | None = None,
     verify: bool = False,
     output: _Path | None = None,
     on_stage: _OnStage = None,

@@ -4,21 +4,32 @@ use std::path::Path;
 
 use glam::DVec3;
 use raypencil_files::{Fault, FileError, Limits, read_npy_numbers};
+use raypencil_rosbag::CloudChoice;
 use raypencil_scene::{FaceId, Side};
 
 use crate::cloud::CloudFrame;
 use crate::comparison::Stated;
+use crate::pack::clouds::is_bag_of_clouds;
+
+/// What a candidate declares of its point cloud.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct CloudConventions<'a> {
+    /// The frame of its points.
+    pub frame: CloudFrame,
+    /// Which cloud of a bag it is.
+    pub choice: CloudChoice<'a>,
+}
 
 /// What a candidate declares of its arrays.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct CandidateConventions {
+pub struct CandidateConventions<'a> {
     /// A number that means "no hit" in `face`, `t` and `range`; of a cloud in all three coordinates. NaN and +Inf, and faces of -1 or 4294967295, always do. -Inf in
     /// `t` and `range` says that what is hit is too near, unless it is this number.
     pub miss: Option<f64>,
     /// Leave out `face.npy`.
     pub ignores_faces: bool,
-    /// The frame of a point cloud.
-    pub frame: CloudFrame,
+    /// Of a point cloud.
+    pub cloud: CloudConventions<'a>,
 }
 
 /// Reads what a folder has of `face.npy`, `t.npy`, `range.npy`, `side.npy`, `point.npy`, `normal.npy`, `barycentric.npy`
@@ -29,7 +40,7 @@ pub struct CandidateConventions {
 pub fn read_candidate(
     folder: &Path,
     shape: &[u64],
-    conventions: CandidateConventions,
+    conventions: CandidateConventions<'_>,
 ) -> Result<Stated, FileError> {
     let reader = Reader { folder, shape, count: shape.iter().product() };
     let is_miss = |number: f64| !number.is_finite() || Some(number) == conventions.miss;
@@ -90,10 +101,21 @@ pub fn read_candidate(
     };
     if stated.face.is_none() && stated.t.is_none() && stated.range.is_none() {
         let expected = "face.npy, t.npy or range.npy; without one of them it is not said which rays hit";
-        let fault = Fault::new("folder", "none of them", expected);
+        let found = match bag_within(folder) {
+            Some(bag) => format!("none of them, but a bag: give {bag}"),
+            None => "none of them".to_string(),
+        };
+        let fault = Fault::new("folder", found, expected);
         return Err(FileError::Array(fault.in_file(folder)));
     }
     Ok(stated)
+}
+
+/// The name of a bag in a folder, such as that of `ros2 bag record`.
+fn bag_within(folder: &Path) -> Option<String> {
+    let entries = std::fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path());
+    let bag = entries.filter(|path| is_bag_of_clouds(path)).min()?;
+    Some(bag.file_name()?.to_string_lossy().into_owned())
 }
 
 struct Reader<'a> {

@@ -3,12 +3,11 @@
 use std::path::Path;
 
 use raypencil_files::{Fault, FileError, RayArray, quoted, ray_rows};
-use raypencil_mesh_io::is_cloud_file;
 use raypencil_referee::ExactCast;
 use raypencil_scene::{CastRay, Precision, Progress, Sides, Triangles};
 
 use super::candidate::{CandidateConventions, read_candidate};
-use super::clouds::{CloudCase, CloudFacts, of_cloud, read_cloud_of};
+use super::clouds::{CloudCase, CloudFacts, is_cloud, of_cloud, read_cloud_of};
 use super::lengths::lengths;
 use super::mistakes::{Trial, explain};
 use super::read::RayPack;
@@ -98,7 +97,7 @@ pub fn check_stated_rays(
     judged.checked(asked_by, (rays, ground.sides), (name, stated), (None, None))
 }
 
-/// Checks a candidate against a pack of rays: a folder of arrays, or a point cloud, PCD or PLY. The answers are computed again: only the question is read
+/// Checks a candidate against a pack of rays: a folder of arrays, or a point cloud: PCD, PLY or of a bag. The answers are computed again: only the question is read
 /// from the pack.
 ///
 /// ```
@@ -128,12 +127,12 @@ pub fn check_ray_pack(
     pack: &Path,
     candidate: &Path,
     precision: Precision,
-    conventions: CandidateConventions,
+    conventions: CandidateConventions<'_>,
     progress: &dyn Progress,
 ) -> Result<RayPackChecked, FileError> {
     progress.stage(&format!("{}: reading", pack.display()));
     let RayPack { mesh, rays, sides, scan, sha256: pack_sha256 } = RayPack::read(pack)?;
-    let case = match is_cloud_file(candidate) {
+    let case = match is_cloud(candidate) {
         true => Some(read_cloud_of(candidate, (&rays.shape, &rays.rays), scan.as_ref(), conventions)?),
         false => None,
     };

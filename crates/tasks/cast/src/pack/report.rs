@@ -88,8 +88,9 @@ impl RayPackChecked {
         let Some(cloud) = &self.cloud else { return notes };
         let range = if cloud.has_range { ", and the field range" } else { "" };
         notes.push(format!(
-            "{} in the frame of {}, laid on the rays {}. Judged: x, y, z, which rays have a point{range}.",
+            "{}{} in the frame of {}, laid on the rays {}. Judged: x, y, z, which rays have a point{range}.",
             counted(cloud.points as u64, "point", "points"),
+            cloud.source.as_ref().map_or(String::new(), |source| format!(" of {source}")),
             cloud.frame.words(),
             cloud.assigned
         ));

@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use raypencil_cast::{
-    CandidateConventions, CastSource, CloudFrame, Questions, RayPackChecked, cast, check_ray_pack,
-    write_scan_pack,
+    CandidateConventions, CastSource, CloudChoice, CloudConventions, CloudFrame, Questions, RayPackChecked,
+    cast, check_ray_pack, stated_points, write_scan_pack,
 };
+use raypencil_rosbag::{BagWriter, PointCloud2, PointField, Stamp, Topic};
 use raypencil_scene::pattern::{Mounting, Spinning, TimedPose, TimedPoses};
 use raypencil_scene::{CastRay, NamedRaySet, Pose, Precision, RaySet, Sides, Silent, Triangles};
 
@@ -58,6 +59,11 @@ fn still() -> Mounting {
 fn set_of(head: &Spinning, mounting: &Mounting) -> NamedRaySet {
     let rays = mounting.place(head.rays("rays").expect("rays"), "rays").expect("poses");
     NamedRaySet::new("head", rays, Sides::Both).expect("a set")
+}
+
+fn of_frame(frame: CloudFrame) -> CandidateConventions<'static> {
+    let cloud = CloudConventions { frame, ..CloudConventions::default() };
+    CandidateConventions { cloud, ..CandidateConventions::default() }
 }
 
 /// A point as a simulator writes it.
@@ -149,7 +155,7 @@ impl Trial {
         path
     }
 
-    fn check(&self, file: &Path, conventions: CandidateConventions) -> Result<RayPackChecked, String> {
+    fn check(&self, file: &Path, conventions: CandidateConventions<'_>) -> Result<RayPackChecked, String> {
         check_ray_pack(&self.folder.path().join("pack"), file, Precision::F64, conventions, &Silent)
             .map_err(|error| error.to_string())
     }
@@ -157,14 +163,14 @@ impl Trial {
     /// Checks points, organised as the pack's rays, in a frame.
     fn judge(&self, points: &[Point], fields: Fields, frame: CloudFrame) -> RayPackChecked {
         let file = self.write(points, fields, [16, points.len() / 16]);
-        self.check(&file, CandidateConventions { frame, ..Default::default() }).expect("a check")
+        self.check(&file, of_frame(frame)).expect("a check")
     }
 
     /// The same points without those that are none, and without order.
     fn judge_dense(&self, points: &[Point], fields: Fields, frame: CloudFrame) -> RayPackChecked {
         let dense: Vec<Point> = points.iter().copied().filter(|point| point.place.is_finite()).collect();
         let file = self.write(&dense, fields, [dense.len(), 1]);
-        self.check(&file, CandidateConventions { frame, ..Default::default() }).expect("a check")
+        self.check(&file, of_frame(frame)).expect("a check")
     }
 
     /// The points fail, and this is why.
@@ -642,4 +648,111 @@ fn points_that_no_rule_lays_on_rays_are_refused_with_the_remedy() {
             && message.contains("`ring` (or `channel`) and `time`"),
         "{message}"
     );
+}
+
+/// A cloud as robots send it, in big endian, with 5 bytes behind each row.
+fn message(points: &[Point], width: usize) -> PointCloud2 {
+    let field = |(name, offset, datatype): (&str, u32, u8)| PointField {
+        name: name.into(),
+        offset,
+        datatype,
+        count: 1,
+    };
+    let fields = [
+        ("ring", 0, PointField::UINT16),
+        ("x", 2, PointField::FLOAT32),
+        ("y", 6, PointField::FLOAT32),
+        ("z", 10, PointField::FLOAT64),
+        ("time", 18, PointField::FLOAT32),
+    ];
+    let bytes = |point: &Point| -> Vec<u8> {
+        let [x, y, z] = point.place.to_array();
+        let parts = [x, y, point.time].map(|part| (part as f32).to_be_bytes());
+        [&point.ring.to_be_bytes()[..], &parts[0], &parts[1], &z.to_be_bytes(), &parts[2]].concat()
+    };
+    let row = |row: &[Point]| [row.iter().flat_map(bytes).collect::<Vec<u8>>(), vec![0xee; 5]].concat();
+    PointCloud2 {
+        height: (points.len() / width) as u32,
+        width: width as u32,
+        fields: fields.map(field).into(),
+        is_bigendian: true,
+        point_step: 22,
+        row_step: 22 * width as u32 + 5,
+        data: points.chunks(width).flat_map(row).collect::<Vec<u8>>().into(),
+        ..PointCloud2::default()
+    }
+}
+
+#[test]
+fn a_cloud_of_a_bag_is_judged_as_that_of_a_file() {
+    let trial = Trial::new(&head(), &bend());
+    let right = points(&trial.set, CloudFrame::Sensor);
+    let mut wrong = right.clone();
+    let far = right.iter().position(|point| point.place.x > 4.0).expect("a far point");
+    wrong[far].place.x += 0.001;
+    let (right, wrong) = (message(&right, 16), message(&wrong, 16));
+    let bag = |name: &str, clouds: &[&PointCloud2]| {
+        let folder = trial.folder.path().join(name);
+        let mut writer = BagWriter::create(&folder).expect("a bag");
+        for cloud in clouds {
+            writer.write(&Topic::new("/points"), Stamp::from_nanoseconds(1), *cloud).expect("a message");
+        }
+        writer.finish().expect("a bag");
+        folder.join(format!("{name}_0.mcap"))
+    };
+    let check = |bag: &Path, choice: CloudChoice<'_>| {
+        let cloud = CloudConventions { frame: CloudFrame::Sensor, choice };
+        trial.check(bag, CandidateConventions { cloud, ..CandidateConventions::default() })
+    };
+    let alone = bag("alone", &[&right]);
+    assert_eq!(stated_points(&alone), Some(1920));
+    let checked = check(&alone, CloudChoice::default()).expect("a check");
+    assert!(checked.passes(), "{:?}", checked.why);
+    let facts = checked.cloud.as_ref().expect("a cloud");
+    assert_eq!((facts.assigned, facts.source.as_deref()), ("by ring and time", Some("message 1 of /points")));
+    assert!(
+        checked.document().screen().contains(" points of message 1 of /points in the frame of the sensor")
+    );
+
+    let both = bag("both", &[&right, &wrong]);
+    let choice = |message| CloudChoice { message: Some(message), ..CloudChoice::default() };
+    assert!(check(&both, choice(1)).expect("a check").passes());
+    let of_second = check(&both, choice(2)).expect("a check");
+    assert_eq!(of_second.comparison.wrong().map(|(index, _)| index).collect::<Vec<_>>(), [far]);
+    let refused = check(&both, CloudChoice::default()).expect_err("two clouds");
+    assert!(
+        refused.ends_with("topic /points: 2 clouds; expected one: `--message` 1 to 2 chooses it"),
+        "{refused}"
+    );
+
+    // The folder that `ros2 bag record` leaves is no folder of arrays.
+    let refused = check(&trial.folder.path().join("both"), CloudChoice::default()).expect_err("a folder");
+    assert!(refused.contains("none of them, but a bag: give both_0.mcap"), "{refused}");
+
+    type Change = fn(&mut PointCloud2);
+    let changes: [(Change, &str); 7] = [
+        (
+            |cloud| cloud.fields[1].datatype = 9,
+            "message 1 of /points, field `x`: datatype 9; expected 1 to 8",
+        ),
+        (|cloud| cloud.fields[1].count = 2, "field `x`: COUNT 2; expected a single number"),
+        (|cloud| cloud.fields[2].name = "ring".into(), "fields: no y; expected x, y and z"),
+        (
+            |cloud| cloud.fields[3].offset = 15,
+            "field `z`: 1 x 8 bytes at 15; expected an end within the 22 bytes",
+        ),
+        (|cloud| cloud.row_step = 351, "row_step: 351 bytes; expected 16 points of 22 bytes, or more"),
+        (|cloud| drop(cloud.data.0.pop()), "data: 42839 bytes; expected 120 rows of 357 bytes"),
+        (
+            |cloud| cloud.width = u32::MAX,
+            "row_step: 357 bytes; expected 4294967295 points of 22 bytes, or more",
+        ),
+    ];
+    for (index, (change, words)) in changes.into_iter().enumerate() {
+        let mut broken = right.clone();
+        change(&mut broken);
+        let refused = check(&bag(&format!("broken{index}"), &[&broken]), CloudChoice::default());
+        let refused = refused.expect_err(words);
+        assert!(refused.contains(words), "{refused}: {words}");
+    }
 }

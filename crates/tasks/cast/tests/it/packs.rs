@@ -100,7 +100,7 @@ impl Folders {
         self.check_by(Precision::F64, CandidateConventions::default())
     }
 
-    fn check_by(&self, precision: Precision, conventions: CandidateConventions) -> RayPackChecked {
+    fn check_by(&self, precision: Precision, conventions: CandidateConventions<'_>) -> RayPackChecked {
         check_ray_pack(self.pack.path(), self.candidate.path(), precision, conventions, &Silent).unwrap()
     }
 

@@ -183,7 +183,7 @@ impl Folders {
         self.check_with(CandidateConventions::default())
     }
 
-    fn check_with(&self, conventions: CandidateConventions) -> RayPackChecked {
+    fn check_with(&self, conventions: CandidateConventions<'_>) -> RayPackChecked {
         let (pack, candidate) = (self.pack.path(), self.candidate.path());
         check_ray_pack(pack, candidate, Precision::F64, conventions, &Silent).unwrap()
     }

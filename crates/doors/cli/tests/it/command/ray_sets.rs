@@ -335,13 +335,29 @@ fn clouds_of_cast_are_right_in_their_own_frame_and_told_in_another() {
                  { time_s = 0.1, position_m = [1, 0.25, 0.5], yaw_left_deg = 20 }]\n";
     at("moving.toml", &format!("[[rays]]\nname = \"moving\"\n{head}{poses}"));
     screen(folder.path(), &["pack", "prism.obj", "--rays", "moving.toml", "-o", "pack"], 0);
-    screen(folder.path(), &["cast", "prism.obj", "moving.toml", "-o", "cast"], 0);
+    screen(folder.path(), &["cast", "prism.obj", "moving.toml", "--bag", "velodyne", "-o", "cast"], 0);
     for (file, frame) in [("cloud.pcd", "mesh"), ("cloud-sensor.pcd", "sensor"), ("cloud-start.pcd", "start")]
     {
         let file = format!("cast/{file}");
         let shown = screen(folder.path(), &["check", "pack", &file, "--frame", frame], 0);
         assert!(shown.contains("laid on the rays by ring and time. Judged: x, y, z, which rays have a point, and the field range"), "{shown}");
     }
+    let bag = "cast/rosbag/rosbag_0.mcap";
+    let of_bag = ["check", "pack", bag, "--frame", "sensor"];
+    let shown = screen(folder.path(), &[&of_bag[..], &["--topic", "/points", "--message", "1"]].concat(), 0);
+    assert!(shown.contains(" points of message 1 of /points in the frame of the sensor"), "{shown}");
+    assert_trouble(
+        &raypencil(folder.path(), &[&of_bag[..], &["--topic", "/scan"]].concat()),
+        &[bag, "topic /scan: no point cloud", "the file has /points (1)"],
+    );
+    assert_trouble(
+        &raypencil(folder.path(), &["check", "pack", "cast/cloud.pcd", "--message", "1"]),
+        &["--topic, --message", "cast/cloud.pcd", "is no bag (.mcap)"],
+    );
+    assert_trouble(
+        &raypencil(folder.path(), &["--max-memory", "10MB", "check", "pack", bag]),
+        &["check: 120 rays, 2 faces, 120 points take about"],
+    );
     let shown = screen(folder.path(), &["check", "pack", "cast/cloud-start.pcd", "-o", "report"], 1);
     assert!(shown.contains("declare --frame start"), "{shown}");
     let report = fs::read_to_string(folder.path().join("report/check.json")).expect("a file");

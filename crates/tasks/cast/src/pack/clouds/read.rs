@@ -4,10 +4,11 @@ use std::path::Path;
 
 use glam::DVec3;
 use raypencil_files::FileError;
-use raypencil_mesh_io::{CloudStorage, read_cloud};
+use raypencil_mesh_io::CloudStorage;
 use raypencil_scene::CastRay;
 
 use super::assign::{Asked, Assigned, BY_DIRECTION, BY_RING, Order, Ring, is_key, unclear, usual_ring};
+use super::file;
 use super::fit::rounded;
 use super::rules::{Places, assigned, backwards, by_direction, rings, swapped};
 use crate::cloud::CloudFrame;
@@ -21,6 +22,8 @@ use crate::pack::scan::Scan;
 pub struct CloudFacts {
     /// The frame that its points are taken to be in.
     pub frame: CloudFrame,
+    /// Which message of a bag it is, in words; `None`: a file of its own.
+    pub source: Option<String>,
     /// Number of its points, without those that stand for no hit.
     pub points: usize,
     /// How they were laid on the rays, in words.
@@ -68,11 +71,12 @@ pub(in crate::pack) fn read_cloud_of<'a>(
     path: &Path,
     (shape, rays): (&'a [u64], &'a [CastRay]),
     scan: Option<&'a Scan>,
-    conventions: CandidateConventions,
+    conventions: CandidateConventions<'_>,
 ) -> Result<CloudCase<'a>, FileError> {
-    let cloud = read_cloud(path, |name| name == "range" || is_key(name))?;
+    let choice = &conventions.cloud.choice;
+    let (cloud, source) = file::read(path, choice, |name| name == "range" || is_key(name))?;
     let fault = |fault: raypencil_files::Fault| FileError::Cloud(fault.in_file(path));
-    let frame = conventions.frame;
+    let frame = conventions.cloud.frame;
     if scan.is_none() && frame != CloudFrame::Mesh {
         let found = format!("--frame {}", frame.option());
         let expected = "a pack of a sensor's scan, which knows its pose (`pack MESH --rays PATTERN.toml`)";
@@ -184,6 +188,7 @@ pub(in crate::pack) fn read_cloud_of<'a>(
         wrong_keys,
         keys_why,
         frame,
+        source,
         points: real,
         assigned: found.by,
         strays: found.strays,

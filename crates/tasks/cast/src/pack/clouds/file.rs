@@ -1,0 +1,89 @@
+//! The file of a cloud: PCD, PLY, or a bag of ROS 2 that has it as a message.
+
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+use raypencil_files::{Fault, FileError};
+use raypencil_mesh_io::{
+    Cloud, PackedField, PackedKind, PackedPoints, claimed_points, is_cloud_file, read_cloud,
+};
+use raypencil_rosbag::{BagCloud, CloudChoice, PointField, largest_point_cloud, read_point_cloud};
+
+/// Whether a file's name ends as that of a bag does: `.mcap`.
+pub fn is_bag_of_clouds(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap"))
+}
+
+/// Whether a file's name ends as that of a cloud does: `.pcd`, `.ply` or `.mcap`.
+pub fn is_cloud(path: &Path) -> bool {
+    is_cloud_file(path) || is_bag_of_clouds(path)
+}
+
+/// The number of points that a file says it has, before anything is made of them, and of a bag that of its largest cloud; `None` if it names none,
+/// or the file cannot be read.
+pub fn stated_points(path: &Path) -> Option<u64> {
+    if !is_bag_of_clouds(path) {
+        return claimed_points(path);
+    }
+    let (stream, length) = opened(path).ok()?;
+    largest_point_cloud(stream, length)
+}
+
+/// Opens a file. Opening a pipe would wait for its writer, so that what it is, is asked before.
+fn opened(path: &Path) -> std::io::Result<(impl Read, u64)> {
+    let facts = std::fs::metadata(path)?;
+    if !facts.is_file() {
+        return Err(std::io::Error::other("not a regular file"));
+    }
+    Ok((BufReader::new(File::open(path)?), facts.len()))
+}
+
+/// Reads those fields of a cloud that `keeps` names, and x, y and z; of a bag beside it which message it is, in words.
+pub(super) fn read(
+    path: &Path,
+    choice: &CloudChoice<'_>,
+    keeps: impl Fn(&str) -> bool,
+) -> Result<(Cloud, Option<String>), FileError> {
+    if !is_bag_of_clouds(path) {
+        return Ok((read_cloud(path, keeps)?, None));
+    }
+    let (stream, length) = opened(path).map_err(|error| FileError::io(path, "read", error))?;
+    let of_bag = || -> Result<_, Fault> {
+        let BagCloud { topic, message, cloud } = read_point_cloud(stream, length, choice)?;
+        let source = format!("message {message} of {topic}");
+        let within = |fault: Fault| fault.inside(&source);
+        let fields = cloud.fields.iter().map(packed).collect::<Result<Vec<_>, _>>().map_err(within)?;
+        let points = PackedPoints {
+            fields: &fields,
+            size: [u64::from(cloud.width), u64::from(cloud.height)],
+            point_step: cloud.point_step as usize,
+            row_step: cloud.row_step as usize,
+            is_big_endian: cloud.is_bigendian,
+            data: &cloud.data.0,
+        };
+        let cloud = points.cloud(|name| ["x", "y", "z"].contains(&name) || keeps(name)).map_err(within)?;
+        Ok((cloud, Some(source)))
+    };
+    of_bag().map_err(|fault| FileError::Cloud(fault.in_file(path)))
+}
+
+/// A field of a message. (`sensor_msgs/msg/PointField`, the constants of `datatype`)
+fn packed(field: &PointField) -> Result<PackedField, Fault> {
+    let (kind, size) = match field.datatype {
+        PointField::INT8 => (PackedKind::Signed, 1),
+        PointField::UINT8 => (PackedKind::Unsigned, 1),
+        PointField::INT16 => (PackedKind::Signed, 2),
+        PointField::UINT16 => (PackedKind::Unsigned, 2),
+        PointField::INT32 => (PackedKind::Signed, 4),
+        PointField::UINT32 => (PackedKind::Unsigned, 4),
+        PointField::FLOAT32 => (PackedKind::Real, 4),
+        PointField::FLOAT64 => (PackedKind::Real, 8),
+        other => {
+            let expected = "1 to 8, a type of sensor_msgs/msg/PointField";
+            return Err(Fault::new(format!("field `{}`", field.name), format!("datatype {other}"), expected));
+        }
+    };
+    let (name, offset, count) = (field.name.clone(), field.offset as usize, field.count as usize);
+    Ok(PackedField { name, offset, kind, size, count })
+}
