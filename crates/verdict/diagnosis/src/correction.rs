@@ -81,6 +81,7 @@ impl Correction {
             Mistake::Rounded { of: Length::Depth | Length::All, .. }
             | Mistake::HalfPrecision(Length::Depth | Length::All)
             | Mistake::Inverse(Length::Depth | Length::All)
+            | Mistake::Squared(Length::Depth | Length::All)
                 if quantity == Quantity::CameraDepth =>
             {
                 true
@@ -89,11 +90,13 @@ impl Correction {
             | Mistake::FromPlane(of)
             | Mistake::Rounded { of, .. }
             | Mistake::HalfPrecision(of)
-            | Mistake::Inverse(of) => match of {
+            | Mistake::Inverse(of)
+            | Mistake::Squared(of) => match of {
                 Length::Range => hit == Some(H::Range),
                 Length::Depth => hit == Some(H::Depth),
                 Length::All => matches!(hit, Some(H::Range | H::Depth)),
             },
+            Mistake::ZBuffer { .. } => hit == Some(H::Depth),
             Mistake::HoldsBeam(_) => channel.sensor != SensorId::Camera,
             Mistake::BeamFluxExchanged => channel.sensor == SensorId::Camera && is_flux,
             Mistake::VisibleReversed => quantity == Quantity::Visible,
@@ -151,6 +154,7 @@ impl Correction {
                 | Mistake::Rounded { of: Length::All, .. }
                 | Mistake::HalfPrecision(Length::All)
                 | Mistake::Inverse(Length::All)
+                | Mistake::Squared(Length::All)
         )
     }
 
@@ -189,6 +193,7 @@ impl Correction {
         }
         if let Mistake::Rounded { .. }
         | Mistake::HalfPrecision(_)
+        | Mistake::ZBuffer { .. }
         | Mistake::Cut { .. }
         | Mistake::HoldsBeam(_)
         | Mistake::BeamFluxExchanged
@@ -243,6 +248,7 @@ impl Correction {
             Mistake::FromPlane(_) => number + axis,
             Mistake::CosinesNegated => -number,
             Mistake::Inverse(_) => 1.0 / number,
+            Mistake::Squared(_) => number.sqrt(),
             Mistake::AngleForCosine(unit) => unit.cosine(number),
             Mistake::CosinesExchanged(held) => {
                 let quantities = [Quantity::CosIncidence, Quantity::CosOffAxis, Quantity::CosView];

@@ -35,6 +35,14 @@ pub(crate) fn foretold(
             (Value::Number(stated), Value::Number(exact)) => is_half(stated, exact),
             _ => return stated,
         },
+        Mistake::ZBuffer { zero_at, one_at } => match (stated, exact) {
+            (Value::Number(stated), Value::Number(exact)) => {
+                let storage = case.recorded.storage.get(&(channel.sensor, channel.item));
+                let slack = z_buffer_slack(storage.copied().unwrap_or(Storage::F64));
+                (z_buffer(exact, zero_at, one_at) - stated).abs() <= slack
+            }
+            _ => return stated,
+        },
         Mistake::Cut { by, is_above, at, held, .. } => {
             let is_beyond = cut_number(case, by, place).is_some_and(|number| match (by, is_above) {
                 (CutBy::Row | CutBy::Column, true) => number >= at,
@@ -129,6 +137,17 @@ pub(crate) fn is_rounded(storage: Storage, stated: f64, exact: f64, quantum: f64
     let is_next =
         if down { (-slack..quantum + slack).contains(&error) } else { error.abs() <= 0.5 * quantum + slack };
     (stated - multiple).abs() <= slack && is_next
+}
+
+/// What a z-buffer holds for a depth: linear in its reciprocal, 0 and 1 at these depths, which may be infinite.
+pub(crate) fn z_buffer(depth: f64, zero_at: f64, one_at: f64) -> f64 {
+    (1.0 / zero_at - 1.0 / depth) / (1.0 / zero_at - 1.0 / one_at)
+}
+
+/// How far a number of a z-buffer may be from what it should be: a program computes it in a few steps of its own arithmetic, of numbers
+/// up to 1. Tuned.
+pub(crate) fn z_buffer_slack(storage: Storage) -> f64 {
+    4.0 * storage.ulp(1.0).max(f64::EPSILON)
 }
 
 /// Whether a stated length is a number of half precision, and the one that the exact length is rounded to.

@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use crate::case::Case;
 use crate::channel::{Value, hit_quantity};
 use crate::correction::{Correction, corrected};
-use crate::forward::{is_half, is_rounded};
+use crate::forward::{is_half, is_rounded, z_buffer, z_buffer_slack};
 use crate::mistake::{Length, Mistake};
-use crate::numbers::{middle, plainest, plainest_between};
+use crate::numbers::{middle, plainest, plainest_between, rounded_to};
 use raypencil_files::Storage;
 use raypencil_scene::{HitQuantity, Place};
 
@@ -22,6 +22,12 @@ const SIGNIFICANT: f64 = 16.0;
 
 /// Share of the lengths that must be multiples of a quantum. Tuned: an edge may say otherwise.
 const MIN_SHARE_OF_MULTIPLES: f64 = 0.95;
+
+/// Share of the depths that must follow the law of a z-buffer. Tuned: an edge may say otherwise.
+const MIN_SHARE_OF_LAW: f64 = 0.95;
+
+/// Decimal places of a z-buffer's planes, metres, at most.
+const MAX_PLACES: i32 = 6;
 
 /// Lengths that must occur, at least, if they are rounded. Tuned.
 const MIN_ROUNDED_LENGTHS: usize = 3;
@@ -139,6 +145,56 @@ impl Pairs {
         is_found.then_some(Mistake::Affine { of: self.of, factor, offset })
     }
 
+    /// The law of a z-buffer: linear in the reciprocal of the depth, by the same slopes and then by least squares.
+    fn z_buffer(&self) -> Option<Mistake> {
+        if self.of != Length::Depth {
+            return None;
+        }
+        let slack = z_buffer_slack(self.storage);
+        let mut by_reciprocal: Vec<(f64, f64)> = self
+            .values
+            .iter()
+            .filter(|(_, exact)| *exact > 0.0)
+            .map(|(stated, exact)| (*stated, 1.0 / exact))
+            .collect();
+        by_reciprocal.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let (low, high) = by_reciprocal.split_at(by_reciprocal.len() / 2);
+        let slope = |(a, b): (&(f64, f64), &(f64, f64))| (b.1 > a.1).then(|| (b.0 - a.0) / (b.1 - a.1));
+        let mut slopes: Vec<f64> = low.iter().zip(high).filter_map(slope).collect();
+        let (slope, _) = middle(&mut slopes, MIN_VALUES / 2)?;
+        let mut rests: Vec<f64> = by_reciprocal.iter().map(|(stated, u)| stated - slope * u).collect();
+        let (rest, spread) = middle(&mut rests, MIN_VALUES)?;
+        // Edges say something else.
+        let near = 8.0 * (spread + slack);
+        by_reciprocal.retain(|(stated, u)| (stated - rest - slope * u).abs() <= near);
+        let [rest, slope] = line_through(&by_reciprocal)?;
+        // Reciprocals of the depths at which it is 0 and 1.
+        let (zero, one) = (-rest / slope, (1.0 - rest) / slope);
+        let share = |zero_at: f64, one_at: f64| {
+            let is =
+                |(stated, exact): &&(f64, f64)| (z_buffer(*exact, zero_at, one_at) - stated).abs() <= slack;
+            self.values.iter().filter(is).count() as f64 / self.values.len() as f64
+        };
+        // The plainest numbers that are right; of what is nearly 0 the reciprocal may be infinite.
+        let decimals = || (0..=MAX_PLACES).map(Some).chain([None]);
+        let depth = |reciprocal: f64, decimals: Option<i32>| match decimals {
+            None => f64::INFINITY,
+            Some(decimals) => rounded_to(1.0 / reciprocal, decimals),
+        };
+        decimals().flat_map(|first| decimals().map(move |second| (first, second))).find_map(
+            |(first, second)| {
+                let (zero_at, one_at) = (depth(zero, first), depth(one, second));
+                // One over the depth has a name of its own.
+                let is_law = zero_at > 0.0
+                    && one_at > 0.0
+                    && zero_at != one_at
+                    && (zero_at, one_at) != (f64::INFINITY, 1.0);
+                (is_law && share(zero_at, one_at) >= MIN_SHARE_OF_LAW)
+                    .then_some(Mistake::ZBuffer { zero_at, one_at })
+            },
+        )
+    }
+
     /// The largest quantum of which nearly all lengths are multiples.
     /// And half precision, which within one power of two is a grid: which of both it is, all wrong rays say, and not these few.
     fn rounded(&self) -> Vec<Mistake> {
@@ -170,6 +226,17 @@ impl Pairs {
     }
 }
 
+/// The line y = a + b x through pairs (y, x), by least squares: a and b.
+fn line_through(pairs: &[(f64, f64)]) -> Option<[f64; 2]> {
+    let count = pairs.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / count;
+    let (y, x) = (mean(|pair| pair.0), mean(|pair| pair.1));
+    let square: f64 = pairs.iter().map(|pair| (pair.1 - x) * (pair.1 - x)).sum();
+    let product: f64 = pairs.iter().map(|pair| (pair.0 - y) * (pair.1 - x)).sum();
+    let slope = product / square;
+    (pairs.len() >= MIN_VALUES && slope.is_finite() && slope != 0.0).then_some([y - slope * x, slope])
+}
+
 /// Quanta that are tried, metres, the largest first: 1, 2 and 5 of each decimal place, and powers of two.
 fn quanta() -> Vec<f64> {
     let decimal = |place: i32| [1, 2, 5].map(|digit| format!("{digit}e{place}").parse().unwrap_or(1.0));
@@ -185,6 +252,9 @@ pub(crate) fn lengths(case: Case<'_>, places: &[Place], base: Option<&Correction
         Pairs::new(case, places, base, length).map_or(Vec::new(), |pairs| {
             let mut found = pairs.affine();
             found.extend(pairs.rounded());
+            if found.is_empty() {
+                found.extend(pairs.z_buffer());
+            }
             found
         })
     };

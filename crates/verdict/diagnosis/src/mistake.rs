@@ -206,6 +206,15 @@ pub enum Mistake {
     GlobalFrame,
     /// A length is one over the true one.
     Inverse(Length),
+    /// A length is the square of the true one.
+    Squared(Length),
+    /// `depth.Z` is what a z-buffer holds: (1/zero - 1/depth) / (1/zero - 1/one), metres; the reciprocal of what is infinite is 0.
+    ZBuffer {
+        /// The depth at which it is 0.
+        zero_at: f64,
+        /// The depth at which it is 1.
+        one_at: f64,
+    },
     /// A beam's cells hold what is true of the beam with this index.
     HoldsBeam(usize),
     /// `flux.beam0` and `flux.beam1` are exchanged.
@@ -387,6 +396,8 @@ impl Mistake {
             Self::PointsMoved(_) => "points_moved",
             Self::GlobalFrame => "global_frame",
             Self::Inverse(_) => "inverse",
+            Self::Squared(_) => "squared",
+            Self::ZBuffer { .. } => "z_buffer",
             Self::HoldsBeam(_) => "other_beam",
             Self::BeamFluxExchanged => "beam_flux_exchanged",
             Self::VisibleReversed => "visible_reversed",
@@ -489,7 +500,9 @@ impl Mistake {
             | Self::FromPlane(_)
             | Self::Rounded { .. }
             | Self::HalfPrecision(_)
-            | Self::Inverse(_) => (REASONS, "Lengths"),
+            | Self::Inverse(_)
+            | Self::Squared(_)
+            | Self::ZBuffer { .. } => (REASONS, "Lengths"),
             Self::Cut { .. } => (REASONS, "Cuts and borders"),
             Self::PrincipalPoint { .. }
             | Self::FocalLength { .. }

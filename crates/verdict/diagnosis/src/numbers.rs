@@ -6,7 +6,7 @@ const MAX_DECIMALS: i32 = 12;
 /// The number with the fewest decimals that is within `uncertainty` of another.
 pub(crate) fn plainest(number: f64, uncertainty: f64) -> f64 {
     for decimals in 0..=MAX_DECIMALS {
-        let rounded = round_to(number, decimals);
+        let rounded = rounded_to(number, decimals);
         if (rounded - number).abs() <= uncertainty {
             return rounded;
         }
@@ -17,7 +17,7 @@ pub(crate) fn plainest(number: f64, uncertainty: f64) -> f64 {
 /// The number with the fewest decimals from `low`, included, to `high`, left out.
 pub(crate) fn plainest_between(low: f64, high: f64) -> f64 {
     for decimals in 0..=MAX_DECIMALS {
-        let rounded = round_to(0.5 * (low + high), decimals);
+        let rounded = rounded_to(0.5 * (low + high), decimals);
         if (low..high).contains(&rounded) {
             return rounded;
         }
@@ -26,7 +26,7 @@ pub(crate) fn plainest_between(low: f64, high: f64) -> f64 {
 }
 
 /// By way of text: the decimal fraction itself, and no product of a rounded power of ten.
-fn round_to(number: f64, decimals: i32) -> f64 {
+pub(crate) fn rounded_to(number: f64, decimals: i32) -> f64 {
     format!("{number:.*}", decimals as usize).parse().unwrap_or(number)
 }
 

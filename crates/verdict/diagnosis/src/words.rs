@@ -97,6 +97,19 @@ impl fmt::Display for Mistake {
                 let (subject, verb) = subject(*of);
                 write!(f, "{subject} {verb} 1 over the true length")
             }
+            Self::Squared(of) => {
+                let (subject, verb) = subject(*of);
+                write!(f, "{subject} {verb} the square of the true length")
+            }
+            Self::ZBuffer { zero_at, one_at } => {
+                let at = |depth: f64| if depth.is_finite() { metres(depth) } else { "infinity".to_string() };
+                write!(
+                    f,
+                    "depth.Z holds numbers of a z-buffer, 0 at {} and 1 at {}: depth is in metres",
+                    at(*zero_at),
+                    at(*one_at)
+                )
+            }
             Self::HoldsBeam(beam) => write!(f, "the rays are those of beam-{beam}: beams are in the scene's order"),
             Self::BeamFluxExchanged => {
                 f.write_str("flux.beam0 and flux.beam1 are exchanged: beams are in the scene's order")

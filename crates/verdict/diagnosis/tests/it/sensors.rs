@@ -16,7 +16,7 @@ const CAMERA: SensorId = SensorId::Camera;
 const BEAM: SensorId = SensorId::Beam(1);
 
 /// Mistakes in the camera, and the key by which each is told.
-const TABLE: [(&str, &str); 27] = [
+const TABLE: [(&str, &str); 30] = [
     ("last row lost", "lines_lost"),
     ("last row 0", "lines_lost"),
     ("last row twice", "line_doubled"),
@@ -44,6 +44,9 @@ const TABLE: [(&str, &str); 27] = [
     ("points from the sensor", "points_from_sensor"),
     ("points moved", "points_moved"),
     ("half precision", "half_precision"),
+    ("squared range", "squared"),
+    ("z-buffer", "z_buffer"),
+    ("reversed z-buffer", "z_buffer"),
 ];
 
 /// The same in a beam.
@@ -402,4 +405,31 @@ fn what_several_sensors_say_goes_before_what_fits_one() {
     normals(&mut candidate, |_, n| glam::DVec3::new(n.x, -n.y, -n.z));
     let told = bench.reasons(&candidate);
     assert_eq!(told, ["camera, beam-0, beam-1: axes"]);
+}
+
+/// A graphics card computes the numbers of its z-buffer in single precision, from a matrix of single precision.
+#[test]
+fn numbers_of_a_z_buffer_in_single_precision_are_told_and_noise_is_not() {
+    let bench = pyramids();
+    let with = |of_depth: &dyn Fn(usize, f64) -> f64| {
+        let mut candidate = bench.exact.clone();
+        let depth = candidate.answers.maps.iter_mut().find(|map| map.sensor == CAMERA).expect("the camera");
+        for (index, cell) in depth.depth.iter_mut().flat_map(|image| image.cells_mut()).enumerate() {
+            *cell = cell.get().map_or(Maybe::NONE, |depth| Maybe::some(of_depth(index, depth)));
+        }
+        bench.diagnosis(&stored_single(&candidate)).map(|found| found.sentence())
+    };
+    let (near, far) = (0.3_f32, 250.0_f32);
+    let (a, b) = (far / (far - near), -far * near / (far - near));
+    let told = with(&|_, depth| f64::from(a + b / depth as f32)).expect("a reason");
+    assert!(told.contains("depth.Z holds numbers of a z-buffer, 0 at 0.3 m and 1 at 250 m"), "{told}");
+    // From -1 to 1, as OpenGL's: 0 lies between the planes, at 2 n f / (f + n).
+    let told = with(&|_, depth| f64::from(2.0 * (a + b / depth as f32) - 1.0)).expect("a reason");
+    assert!(told.contains("z-buffer, 0 at 0.59928 m and 1 at 250 m"), "{told}");
+    // The same numbers with an error of a hundred last digits, up and down.
+    let noise = with(&|index, depth| {
+        let share = f64::from((index as u32).wrapping_mul(2_654_435_769) >> 8) / f64::from(1 << 24);
+        f64::from(a + b / depth as f32) + 1.2e-5 * (share - 0.5)
+    });
+    assert!(noise.is_none_or(|told| !told.contains("z-buffer")));
 }

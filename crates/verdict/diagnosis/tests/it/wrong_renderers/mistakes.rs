@@ -60,6 +60,15 @@ pub const MISTAKES: &[Make] = &[
         m.lengths(Length::All, |_, _, x| 1.0 / x);
         parts(Length::All).map(Mistake::Inverse).collect()
     }),
+    ("squared range", |m| {
+        m.lengths(Length::Range, |_, _, x| x * x);
+        vec![Mistake::Squared(Length::Range)]
+    }),
+    ("z-buffer", |m| {
+        let near = 0.125 + m.random.share();
+        z_buffered(m, (near * 1e3).round() / 1e3, 50.0)
+    }),
+    ("reversed z-buffer", |m| z_buffered(m, f64::INFINITY, 0.5)),
     ("another beam", |m| {
         let SensorId::Beam(own) = m.sensor else { return Vec::new() };
         let scene = m.bench.scene;

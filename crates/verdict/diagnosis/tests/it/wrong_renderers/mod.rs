@@ -356,6 +356,12 @@ fn rounded(making: &mut Making<'_>, of: Length, quantum: f64, down: bool) -> Vec
     parts(of).map(|of| Mistake::Rounded { of, quantum, down }).collect()
 }
 
+/// Depths as a z-buffer holds them, 0 and 1 at these.
+fn z_buffered(making: &mut Making<'_>, zero_at: f64, one_at: f64) -> Vec<Mistake> {
+    making.lengths(Length::Depth, |_, _, x| (1.0 / zero_at - 1.0 / x) / (1.0 / zero_at - 1.0 / one_at));
+    vec![Mistake::ZBuffer { zero_at, one_at }]
+}
+
 /// The nearest number of 11 significant bits.
 fn in_half_precision(x: f64) -> f64 {
     let power = f64::from_bits(x.to_bits() & 0x7ff0_0000_0000_0000);
