@@ -129,6 +129,10 @@ impl Correction {
             Mistake::CosinesNegated | Mistake::AngleForCosine(_) => 9,
             Mistake::Shifted { .. } => 10,
             Mistake::Cut { .. } => 11,
+            // Laws of depths: one undoes another.
+            Mistake::ZBuffer { .. }
+            | Mistake::Inverse(Length::Depth | Length::All)
+            | Mistake::Squared(Length::Depth | Length::All) => 13,
             _ => 0,
         };
         // A number that is fitted to lengths in another unit is that unit.

@@ -175,8 +175,12 @@ impl Pairs {
                 |(stated, exact): &&(f64, f64)| (z_buffer(*exact, zero_at, one_at) - stated).abs() <= slack;
             self.values.iter().filter(is).count() as f64 / self.values.len() as f64
         };
-        // The plainest numbers that are right; of what is nearly 0 the reciprocal may be infinite.
-        let decimals = || (0..=MAX_PLACES).map(Some).chain([None]);
+        // One over the depth has a name of its own.
+        if share(f64::INFINITY, 1.0) >= MIN_SHARE_OF_LAW {
+            return None;
+        }
+        // The plainest numbers that are right. None is plainer than infinity, of which the reciprocal is 0.
+        let decimals = || [None].into_iter().chain((0..=MAX_PLACES).map(Some));
         let depth = |reciprocal: f64, decimals: Option<i32>| match decimals {
             None => f64::INFINITY,
             Some(decimals) => rounded_to(1.0 / reciprocal, decimals),
@@ -184,11 +188,7 @@ impl Pairs {
         decimals().flat_map(|first| decimals().map(move |second| (first, second))).find_map(
             |(first, second)| {
                 let (zero_at, one_at) = (depth(zero, first), depth(one, second));
-                // One over the depth has a name of its own.
-                let is_law = zero_at > 0.0
-                    && one_at > 0.0
-                    && zero_at != one_at
-                    && (zero_at, one_at) != (f64::INFINITY, 1.0);
+                let is_law = zero_at > 0.0 && one_at > 0.0 && zero_at != one_at;
                 (is_law && share(zero_at, one_at) >= MIN_SHARE_OF_LAW)
                     .then_some(Mistake::ZBuffer { zero_at, one_at })
             },

@@ -15,7 +15,7 @@ pub enum LengthUnit {
 
 impl LengthUnit {
     /// Metres of one unit, as a quotient: it is the nearest number to the exact one after a multiplication.
-    pub(crate) fn to_metres(self, value: f64) -> f64 {
+    pub fn to_metres(self, value: f64) -> f64 {
         match self {
             Self::Millimetres => value / 1e3,
             Self::Centimetres => value / 1e2,

@@ -138,6 +138,22 @@ fn is_alike<'m>(made: impl Iterator<Item = &'m [Mistake]> + Clone, reason: &Reas
         Mistake::Rounded { quantum, .. } if has(&|one| matches!(one, Mistake::HalfPrecision(_))) => {
             is_whole && quantum.to_bits().trailing_zeros() >= 52
         }
+        // Lengths in another unit, which were rounded to a quantum of that unit.
+        Mistake::Rounded { of, quantum, down }
+            if made.clone().flatten().any(|one| matches!(one, Mistake::Unit(_))) =>
+        {
+            let units = made.clone().flatten().filter_map(|one| match one {
+                Mistake::Unit(unit) => Some(*unit),
+                _ => None,
+            });
+            is_whole
+                && units.clone().any(|unit| {
+                    has(&|one| {
+                        matches!(one, Mistake::Rounded { of: other, quantum: own, down: way }
+                            if other == of && way == down && (unit.to_metres(*own) - quantum).abs() <= 1e-9 * quantum)
+                    })
+                })
+        }
         Mistake::Rounded { of, quantum, down: false } => {
             let is_down = |one: &Mistake| matches!(one, Mistake::Rounded { of: other, quantum: own, down: true } if (other, own) == (of, quantum));
             let is_half = |one: &Mistake| {
