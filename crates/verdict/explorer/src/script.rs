@@ -67,6 +67,7 @@ const MODULES: &[(&str, &str)] = modules![
     "view3d/rig.js"
     "drive/scene.js"
     "gl/program.js"
+    "gl/vertices.js"
     "drive/solid.js"
     "gl/lines.js"
     "view3d/terrain.js"

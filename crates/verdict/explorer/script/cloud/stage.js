@@ -15,13 +15,10 @@ export class CloudStage extends GlStage {
     this.points = null;
     /** @type {{positions: Float32Array, colours: Uint32Array}|null} */
     this.cloud = null;
-    canvas.addEventListener(
-      'webglcontextlost',
-      () => {
-        this.points = null;
-      },
-      { signal: this.stop.signal },
-    );
+  }
+
+  forget() {
+    this.points = null;
   }
 
   /** @param {Float32Array} positions three numbers each @param {Uint32Array} colours */
@@ -44,19 +41,9 @@ export class CloudStage extends GlStage {
    * @param {number} size of a point, CSS pixels; 0: none @param {Rgb} sky
    */
   drawCloud(camera, pixelRatio, look, size, sky) {
-    const { gl, canvas } = this;
-    if (this.isLost || gl.isContextLost()) {
+    if (!this.begin(camera, pixelRatio, sky)) {
       return;
     }
-    const width = Math.max(1, Math.round(camera.width * pixelRatio));
-    const height = Math.max(1, Math.round(camera.height * pixelRatio));
-    if (canvas.width !== width || canvas.height !== height) {
-      [canvas.width, canvas.height] = [width, height];
-    }
-    gl.viewport(0, 0, width, height);
-    gl.depthMask(true);
-    gl.clearColor(...sky, 1);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     if (look) {
       this.terrainDrawing?.draw(camera, look, pixelRatio);
     }

@@ -1,6 +1,7 @@
 // Solid coloured faces that change from frame to frame: the cells of the map, and the vehicle. Drawn by WebGL2.
 
-import { GL_LOG_DEPTH, GlProgram } from '../gl/program.js';
+import { DepthProgram, GL_LOG_DEPTH } from '../gl/program.js';
+import { GlVertices } from '../gl/vertices.js';
 
 /** @typedef {import('../view3d/camera.js').ViewCamera} ViewCamera */
 /** @typedef {{positions: Float32Array, colours: Uint32Array, indices: Uint32Array}} SolidMesh */
@@ -51,35 +52,17 @@ void main() {
 export class SolidDrawing {
   /** @param {WebGL2RenderingContext} gl */
   constructor(gl) {
-    this.gl = gl;
-    this.plain = new GlProgram(gl, SOLID_VERTEX, SOLID_FRAGMENT, []);
-    /** @type {GlProgram | null} */
-    this.deep = null;
-    this.array = gl.createVertexArray();
-    this.buffers = [gl.createBuffer(), gl.createBuffer(), gl.createBuffer()];
+    this.program = new DepthProgram(gl, SOLID_VERTEX, SOLID_FRAGMENT);
+    this.vertices = new GlVertices(gl, gl.DYNAMIC_DRAW, gl.FLOAT, gl.UNSIGNED_BYTE);
     this.count = 0;
-    gl.bindVertexArray(this.array);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[0]);
-    gl.enableVertexAttribArray(0);
-    gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[1]);
-    gl.enableVertexAttribArray(1);
-    gl.vertexAttribPointer(1, 4, gl.UNSIGNED_BYTE, true, 0, 0);
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.buffers[2]);
-    gl.bindVertexArray(null);
   }
 
   /** Replaces all faces. The colour of a face is that of its last vertex. @param {SolidMesh} mesh */
   set({ positions, colours, indices }) {
-    const { gl } = this;
     this.count = indices.length;
-    gl.bindVertexArray(this.array);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[0]);
-    gl.bufferData(gl.ARRAY_BUFFER, positions, gl.DYNAMIC_DRAW);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[1]);
-    gl.bufferData(gl.ARRAY_BUFFER, colours, gl.DYNAMIC_DRAW);
-    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.DYNAMIC_DRAW);
-    gl.bindVertexArray(null);
+    this.vertices.set(0, positions);
+    this.vertices.set(1, colours);
+    this.vertices.setFaces(indices);
   }
 
   /**
@@ -88,37 +71,15 @@ export class SolidDrawing {
    */
   draw(camera, ambient, pull) {
     if (this.count === 0) { return; }
-    const { gl } = this;
-    const { isDeep, near, far } = camera;
-    if (isDeep && !this.deep) {
-      this.deep = new GlProgram(gl, SOLID_VERTEX, SOLID_FRAGMENT, ['LOG_DEPTH']);
-    }
-    const program = isDeep && this.deep ? this.deep : this.plain;
-    program.use();
-    const { matrix, shift, eyeHigh } = camera.forShader();
-    gl.uniformMatrix4fv(program.place('matrix'), false, matrix);
-    program.set('shift', ...shift);
-    program.set('eyeHigh', ...eyeHigh);
-    program.set('pull', pull * 2 * far * near / (far - near), pull > 0 ? 3e-7 : 0);
+    const program = this.program.use(camera);
+    program.setEye(camera);
+    program.setPull(camera, pull);
     program.set('ambient', ambient);
-    program.set('logPull', Math.log2(1 + pull) / Math.log2(far / near));
-    if (isDeep) {
-      program.set('logDepth', 1 / near, 1 / Math.log2(far / near));
-    }
-    gl.disable(gl.BLEND);
-    gl.disable(gl.CULL_FACE);
-    gl.enable(gl.DEPTH_TEST);
-    gl.depthFunc(gl.LEQUAL);
-    gl.depthMask(true);
-    gl.bindVertexArray(this.array);
-    gl.drawElements(gl.TRIANGLES, this.count, gl.UNSIGNED_INT, 0);
-    gl.bindVertexArray(null);
+    this.vertices.drawFaces(this.count);
   }
 
   dispose() {
-    this.buffers.forEach((buffer) => this.gl.deleteBuffer(buffer));
-    this.gl.deleteVertexArray(this.array);
-    this.plain.dispose();
-    this.deep?.dispose();
+    this.program.dispose();
+    this.vertices.dispose();
   }
 }

@@ -22,7 +22,10 @@ export class DriveStage extends GlStage {
     this.cells = null;
     /** @type {SolidMesh|null} */
     this.body = null;
-    canvas.addEventListener('webglcontextlost', () => { this.solids = null; }, { signal: this.stop.signal });
+  }
+
+  forget() {
+    this.solids = null;
   }
 
   /** @param {SolidMesh|null} cells null: none are shown */
@@ -50,28 +53,11 @@ export class DriveStage extends GlStage {
    * @param {SceneDrawing} drawing @param {Record<string, Rgb>} colours
    */
   drawDrive(camera, pixelRatio, look, drawing, colours) {
-    const { gl, canvas } = this;
-    if (this.isLost || gl.isContextLost()) { return; }
-    const width = Math.max(1, Math.round(camera.width * pixelRatio));
-    const height = Math.max(1, Math.round(camera.height * pixelRatio));
-    if (canvas.width !== width || canvas.height !== height) {
-      [canvas.width, canvas.height] = [width, height];
-    }
-    gl.viewport(0, 0, width, height);
-    gl.depthMask(true);
-    gl.clearColor(...colours.sky, 1);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    if (!this.begin(camera, pixelRatio, colours.sky)) { return; }
     const solids = this.solids ?? this.#makeSolids();
     if (look) { this.terrainDrawing?.draw(camera, look, pixelRatio); }
     if (this.cells) { solids.cells.draw(camera, 0.45, CELL_PULL); }
     solids.body.draw(camera, 0.45, 0);
-    const { strokes } = this;
-    if (!strokes) { return; }
-    strokes.begin(camera, pixelRatio);
-    for (const { points, colour, opacity } of drawing.areas) { strokes.area(points, [...colours[colour], opacity]); }
-    for (const { from, to, colour, opacity, look: lineLook } of drawing.lines) {
-      strokes.line(from, to, [...colours[colour], opacity], lineLook);
-    }
-    strokes.draw(CELL_PULL);
+    this.drawStrokes(camera, pixelRatio, [drawing], colours, CELL_PULL);
   }
 }

@@ -3,7 +3,7 @@
 // A close-up may show micrometres of a line of many metres. So each line is clipped to what is seen before
 // its numbers are rounded to single precision.
 
-import { GL_LOG_DEPTH, GlProgram } from './program.js';
+import { DepthProgram, GL_LOG_DEPTH } from './program.js';
 
 /** @typedef {import('../view3d/vector.js').Point3} Point3 */
 /** @typedef {import('../view3d/camera.js').ViewCamera} ViewCamera */
@@ -96,9 +96,7 @@ export class StrokeDrawing {
   /** @param {WebGL2RenderingContext} gl */
   constructor(gl) {
     this.gl = gl;
-    this.plain = new GlProgram(gl, LINES_VERTEX, LINES_FRAGMENT, []);
-    /** @type {GlProgram | null} */
-    this.deep = null;
+    this.program = new DepthProgram(gl, LINES_VERTEX, LINES_FRAGMENT);
     this.array = gl.createVertexArray();
     this.buffer = gl.createBuffer();
     gl.bindVertexArray(this.array);
@@ -148,14 +146,15 @@ export class StrokeDrawing {
     const reach = half + 1;
     const nx = ((-dy / length) * reach) / halfWidth;
     const ny = ((dx / length) * reach) / halfHeight;
-    const corner = (/** @type {number} */ share, /** @type {number} */ sign) => {
+    /** @param {number} share of the line @param {number} sign way across it, in units of its reach */
+    const corner = (share, sign, side = reach * sign, halfOfSide = half) => {
       list.add(
         a.x + (b.x - a.x) * share + nx * sign,
         a.y + (b.y - a.y) * share + ny * sign,
         a.z + (b.z - a.z) * share,
         a.inverse + (b.inverse - a.inverse) * share,
-        reach * sign,
-        half,
+        side,
+        halfOfSide,
         colour,
       );
     };
@@ -179,20 +178,9 @@ export class StrokeDrawing {
       const size = (5 + 2 * look.width) * this.pixelRatio;
       const tip = 0.5 + size / length;
       const wing = (size * 0.6) / reach;
-      const point = (/** @type {number} */ share, /** @type {number} */ sign) => {
-        list.add(
-          a.x + (b.x - a.x) * share + nx * sign,
-          a.y + (b.y - a.y) * share + ny * sign,
-          a.z + (b.z - a.z) * share,
-          a.inverse + (b.inverse - a.inverse) * share,
-          0,
-          1e4,
-          colour,
-        );
-      };
-      point(tip, 0);
-      point(0.5 - size / length, wing);
-      point(0.5 - size / length, -wing);
+      corner(tip, 0, 0, 1e4);
+      corner(0.5 - size / length, wing, 0, 1e4);
+      corner(0.5 - size / length, -wing, 0, 1e4);
     }
   }
 
@@ -218,11 +206,7 @@ export class StrokeDrawing {
   draw(slack) {
     const { gl, camera } = this;
     if (!camera) return;
-    const isDeep = camera.isDeep;
-    if (isDeep && !this.deep) this.deep = new GlProgram(gl, LINES_VERTEX, LINES_FRAGMENT, ['LOG_DEPTH']);
-    const program = isDeep && this.deep ? this.deep : this.plain;
-    program.use();
-    if (isDeep) program.set('logDepth', 1 / camera.near, 1 / Math.log2(camera.far / camera.near));
+    const program = this.program.use(camera);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     gl.disable(gl.CULL_FACE);
@@ -239,7 +223,7 @@ export class StrokeDrawing {
   }
 
   /**
-   * @param {GlProgram} program
+   * @param {import('./program.js').GlProgram} program
    * @param {TriangleList} list
    * @param {number} compare
    * @param {number} strength
@@ -248,11 +232,9 @@ export class StrokeDrawing {
   #drawList(program, list, compare, strength, pull) {
     const { gl, camera } = this;
     if (list.vertices === 0 || !camera) return;
-    const span = camera.far - camera.near;
     gl.depthFunc(compare);
     program.set('strength', strength);
-    program.set('pull', (pull * 2 * camera.far * camera.near) / span, 3e-7);
-    program.set('logPull', Math.log2(1 + pull) / Math.log2(camera.far / camera.near));
+    program.setPull(camera, pull);
     gl.bufferData(
       gl.ARRAY_BUFFER,
       list.numbers.subarray(0, list.vertices * NUMBERS_PER_VERTEX),
@@ -264,8 +246,7 @@ export class StrokeDrawing {
   dispose() {
     this.gl.deleteBuffer(this.buffer);
     this.gl.deleteVertexArray(this.array);
-    this.plain.dispose();
-    this.deep?.dispose();
+    this.program.dispose();
   }
 }
 

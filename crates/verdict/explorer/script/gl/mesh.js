@@ -1,6 +1,7 @@
 // The drawing of the terrain by WebGL2: one indexed draw, flat faces, a grid of metres laid over the ground.
 
-import { GL_LOG_DEPTH, GlProgram } from './program.js';
+import { DepthProgram, GL_LOG_DEPTH } from './program.js';
+import { GlVertices } from './vertices.js';
 import { orderForDrawing } from '../view3d/terrain.js';
 
 /** @typedef {import('../view3d/terrain.js').Terrain} Terrain */
@@ -119,8 +120,7 @@ export class TerrainDrawing {
   constructor(gl, terrain, ramp) {
     this.gl = gl;
     this.faceCount = terrain.faceCount;
-    /** Programs by the words that they are compiled with. @type {Map<string, GlProgram>} */
-    this.programs = new Map();
+    this.program = new DepthProgram(gl, MESH_VERTEX, MESH_FRAGMENT);
     const order = orderForDrawing(terrain);
     this.owner = order.owner.subarray(0, order.count);
     this.indexCount = order.indices.length;
@@ -137,25 +137,10 @@ export class TerrainDrawing {
       const face = order.owner[vertex];
       if (face !== 4294967295) normals[vertex] = faceNormals[face];
     }
-    this.array = gl.createVertexArray();
-    gl.bindVertexArray(this.array);
-    this.buffers = [gl.createBuffer(), gl.createBuffer(), gl.createBuffer(), gl.createBuffer()];
-    const [positionBuffer, normalBuffer, colourBuffer, indexBuffer] = this.buffers;
-    gl.bindBuffer(gl.ARRAY_BUFFER, positionBuffer);
-    gl.bufferData(gl.ARRAY_BUFFER, positions, gl.STATIC_DRAW);
-    gl.enableVertexAttribArray(0);
-    gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
-    gl.bindBuffer(gl.ARRAY_BUFFER, normalBuffer);
-    gl.bufferData(gl.ARRAY_BUFFER, normals, gl.STATIC_DRAW);
-    gl.enableVertexAttribArray(1);
-    gl.vertexAttribPointer(1, 4, gl.BYTE, true, 0, 0);
-    gl.bindBuffer(gl.ARRAY_BUFFER, colourBuffer);
-    gl.bufferData(gl.ARRAY_BUFFER, 4 * order.count, gl.STATIC_DRAW);
-    gl.enableVertexAttribArray(2);
-    gl.vertexAttribPointer(2, 4, gl.UNSIGNED_BYTE, true, 0, 0);
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, indexBuffer);
-    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, order.indices, gl.STATIC_DRAW);
-    gl.bindVertexArray(null);
+    this.vertices = new GlVertices(gl, gl.STATIC_DRAW, gl.FLOAT, gl.BYTE, gl.UNSIGNED_BYTE);
+    this.vertices.set(0, positions);
+    this.vertices.set(1, normals);
+    this.vertices.setFaces(order.indices);
     this.ramp = gl.createTexture();
     gl.bindTexture(gl.TEXTURE_2D, this.ramp);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, 256, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, ramp);
@@ -170,22 +155,13 @@ export class TerrainDrawing {
    * @param {Uint32Array} ofFaces bytes R, G, B, 255 as one word (R is the lowest)
    */
   setColours(ofFaces) {
-    const { gl, owner } = this;
+    const { owner } = this;
     const colours = new Uint32Array(this.vertexCount);
     for (let vertex = 0; vertex < this.vertexCount; vertex++) {
       const face = owner[vertex];
       if (face !== 4294967295) colours[vertex] = ofFaces[face];
     }
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[2]);
-    gl.bufferSubData(gl.ARRAY_BUFFER, 0, colours);
-  }
-
-  /** @param {string[]} words */
-  #program(words) {
-    const key = words.join(' ');
-    const program = this.programs.get(key) ?? new GlProgram(this.gl, MESH_VERTEX, MESH_FRAGMENT, words);
-    this.programs.set(key, program);
-    return program;
+    this.vertices.set(2, colours);
   }
 
   /**
@@ -196,14 +172,10 @@ export class TerrainDrawing {
   draw(camera, look, pixelRatio) {
     if (this.indexCount === 0) return;
     const { gl } = this;
-    const isDeep = camera.isDeep;
     const hasPlace = look.grid > 0 || look.source === 'elevation';
-    const program = this.#program([...(isDeep ? ['LOG_DEPTH'] : []), ...(hasPlace ? ['PLACE'] : [])]);
-    program.use();
-    const { matrix, shift, eyeHigh } = camera.forShader();
-    gl.uniformMatrix4fv(program.place('matrix'), false, matrix);
-    program.set('shift', ...shift);
-    program.set('eyeHigh', ...eyeHigh);
+    const program = this.program.use(camera, ...(hasPlace ? ['PLACE'] : []));
+    const { eyeHigh } = camera.forShader();
+    program.setEye(camera);
     program.set('source', look.source === 'slope' ? 2 : look.source === 'elevation' ? 1 : 0);
     const start = look.source === 'elevation' ? look.span[0] - eyeHigh[2] : look.span[0];
     program.set('ramp', start, 1 / Math.max(look.span[1] - look.span[0], 1e-9));
@@ -216,24 +188,14 @@ export class TerrainDrawing {
       place / look.grid - 10 * Math.floor(place / look.grid / 10);
     if (look.grid > 0) program.set('grid', 1 / look.grid, phase(eyeHigh[0]), phase(eyeHigh[1]), 1);
     else program.set('grid', 0, 0, 0, 0);
-    if (isDeep) program.set('logDepth', 1 / camera.near, 1 / Math.log2(camera.far / camera.near));
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, this.ramp);
-    gl.disable(gl.BLEND);
-    gl.disable(gl.CULL_FACE);
-    gl.enable(gl.DEPTH_TEST);
-    gl.depthFunc(gl.LEQUAL);
-    gl.depthMask(true);
-    gl.bindVertexArray(this.array);
-    gl.drawElements(gl.TRIANGLES, this.indexCount, gl.UNSIGNED_INT, 0);
-    gl.bindVertexArray(null);
+    this.vertices.drawFaces(this.indexCount);
   }
 
   dispose() {
-    const { gl } = this;
-    for (const buffer of this.buffers) gl.deleteBuffer(buffer);
-    gl.deleteVertexArray(this.array);
-    gl.deleteTexture(this.ramp);
-    for (const program of this.programs.values()) program.dispose();
+    this.vertices.dispose();
+    this.gl.deleteTexture(this.ramp);
+    this.program.dispose();
   }
 }

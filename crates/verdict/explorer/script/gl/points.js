@@ -1,6 +1,7 @@
 // Points of a cloud, each with its colour. Drawn by WebGL2.
 
-import { GL_LOG_DEPTH, GlProgram } from './program.js';
+import { DepthProgram, GL_LOG_DEPTH } from './program.js';
+import { GlVertices } from './vertices.js';
 
 /** @typedef {import('../view3d/camera.js').ViewCamera} ViewCamera */
 
@@ -45,31 +46,16 @@ const POINTS_PULL = 2e-3;
 export class PointsDrawing {
   /** @param {WebGL2RenderingContext} gl */
   constructor(gl) {
-    this.gl = gl;
-    this.plain = new GlProgram(gl, POINTS_VERTEX, POINTS_FRAGMENT, []);
-    /** @type {GlProgram | null} */
-    this.deep = null;
-    this.array = gl.createVertexArray();
-    this.buffers = [gl.createBuffer(), gl.createBuffer()];
+    this.program = new DepthProgram(gl, POINTS_VERTEX, POINTS_FRAGMENT);
+    this.vertices = new GlVertices(gl, gl.DYNAMIC_DRAW, gl.FLOAT, gl.UNSIGNED_BYTE);
     this.count = 0;
-    gl.bindVertexArray(this.array);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[0]);
-    gl.enableVertexAttribArray(0);
-    gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[1]);
-    gl.enableVertexAttribArray(1);
-    gl.vertexAttribPointer(1, 4, gl.UNSIGNED_BYTE, true, 0, 0);
-    gl.bindVertexArray(null);
   }
 
   /** Replaces all points. @param {Float32Array} positions @param {Uint32Array} colours */
   set(positions, colours) {
-    const { gl } = this;
     this.count = colours.length;
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[0]);
-    gl.bufferData(gl.ARRAY_BUFFER, positions, gl.DYNAMIC_DRAW);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[1]);
-    gl.bufferData(gl.ARRAY_BUFFER, colours, gl.DYNAMIC_DRAW);
+    this.vertices.set(0, positions);
+    this.vertices.set(1, colours);
   }
 
   /** @param {ViewCamera} camera @param {number} size of a point, pixels of the device */
@@ -77,36 +63,15 @@ export class PointsDrawing {
     if (this.count === 0) {
       return;
     }
-    const { gl } = this;
-    const { isDeep, near, far } = camera;
-    if (isDeep && !this.deep) {
-      this.deep = new GlProgram(gl, POINTS_VERTEX, POINTS_FRAGMENT, ['LOG_DEPTH']);
-    }
-    const program = isDeep && this.deep ? this.deep : this.plain;
-    program.use();
-    const { matrix, shift, eyeHigh } = camera.forShader();
-    gl.uniformMatrix4fv(program.place('matrix'), false, matrix);
-    program.set('shift', ...shift);
-    program.set('eyeHigh', ...eyeHigh);
-    program.set('pull', (POINTS_PULL * 2 * far * near) / (far - near), 3e-7);
+    const program = this.program.use(camera);
+    program.setEye(camera);
+    program.setPull(camera, POINTS_PULL);
     program.set('size', size);
-    program.set('logPull', Math.log2(1 + POINTS_PULL) / Math.log2(far / near));
-    if (isDeep) {
-      program.set('logDepth', 1 / near, 1 / Math.log2(far / near));
-    }
-    gl.disable(gl.BLEND);
-    gl.enable(gl.DEPTH_TEST);
-    gl.depthFunc(gl.LEQUAL);
-    gl.depthMask(true);
-    gl.bindVertexArray(this.array);
-    gl.drawArrays(gl.POINTS, 0, this.count);
-    gl.bindVertexArray(null);
+    this.vertices.drawPoints(this.count);
   }
 
   dispose() {
-    this.buffers.forEach((buffer) => this.gl.deleteBuffer(buffer));
-    this.gl.deleteVertexArray(this.array);
-    this.plain.dispose();
-    this.deep?.dispose();
+    this.program.dispose();
+    this.vertices.dispose();
   }
 }

@@ -1,5 +1,7 @@
 // A WebGL2 program: two shaders, compiled and linked, with its uniforms by name.
 
+/** @typedef {import('../view3d/camera.js').ViewCamera} ViewCamera */
+
 /** The part of a fragment shader that writes logarithmic depths, for scenes of very unlike depths. */
 export const GL_LOG_DEPTH = `
 uniform vec2 logDepth; // 1 / near, 1 / log2(far / near)
@@ -73,7 +75,51 @@ export class GlProgram {
     else this.gl.uniform4fv(place, values);
   }
 
+  /** Sets where the eye is. @param {ViewCamera} camera */
+  setEye(camera) {
+    const { matrix, shift, eyeHigh } = camera.forShader();
+    this.gl.uniformMatrix4fv(this.place('matrix'), false, matrix);
+    this.set('shift', ...shift);
+    this.set('eyeHigh', ...eyeHigh);
+  }
+
+  /** Draws nearer to the eye than things are. @param {ViewCamera} camera @param {number} share of the depth */
+  setPull({ near, far }, share) {
+    this.set('pull', (share * 2 * far * near) / (far - near), share > 0 ? 3e-7 : 0);
+    this.set('logPull', Math.log2(1 + share) / Math.log2(far / near));
+  }
+
   dispose() {
     this.gl.deleteProgram(this.program);
+  }
+}
+
+/** One program in all its forms, each compiled when it is first needed: for usual and for deep pictures. */
+export class DepthProgram {
+  /** @param {WebGL2RenderingContext} gl @param {string} vertexText @param {string} fragmentText */
+  constructor(gl, vertexText, fragmentText) {
+    this.gl = gl;
+    this.vertexText = vertexText;
+    this.fragmentText = fragmentText;
+    /** Forms by the words that are defined in both shaders. @type {Map<string, GlProgram>} */
+    this.forms = new Map();
+  }
+
+  /**
+   * The form for what a camera sees, in use.
+   * @param {ViewCamera} camera @param {...string} words names that are defined in both shaders
+   */
+  use(camera, ...words) {
+    const all = camera.isDeep ? ['LOG_DEPTH', ...words] : words;
+    const key = all.join(' ');
+    const form = this.forms.get(key) ?? new GlProgram(this.gl, this.vertexText, this.fragmentText, all);
+    this.forms.set(key, form);
+    form.use();
+    if (camera.isDeep) form.set('logDepth', 1 / camera.near, 1 / Math.log2(camera.far / camera.near));
+    return form;
+  }
+
+  dispose() {
+    this.forms.forEach((form) => form.dispose());
   }
 }

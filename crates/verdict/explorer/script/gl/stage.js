@@ -71,6 +71,7 @@ export class GlStage {
         event.preventDefault();
         this.isLost = true;
         this.losses += 1;
+        this.forget();
         onLoss(true);
       },
       { signal },
@@ -94,6 +95,9 @@ export class GlStage {
     if (!gl) throw new Error('this browser gives no WebGL2');
     return gl;
   }
+
+  /** The context is lost, and with it what a stage beyond this one has in it. */
+  forget() {}
 
   /** Whether the picture is computed without a graphics processor. */
   get isSoftware() {
@@ -164,8 +168,21 @@ export class GlStage {
    * @param {boolean} isCoarse whether the picture must come fast
    */
   draw(camera, pixelRatio, look, drawings, colours, slack, isCoarse) {
+    if (!this.begin(camera, pixelRatio, colours.sky)) return;
+    this.#drawingOf(camera, isCoarse)?.draw(camera, look, pixelRatio);
+    this.drawStrokes(camera, pixelRatio, drawings, colours, slack);
+  }
+
+  /**
+   * Begins a frame: the canvas has its size, and is empty.
+   * @param {ViewCamera} camera
+   * @param {number} pixelRatio
+   * @param {Rgb} sky
+   * @returns {boolean} false while the context is lost
+   */
+  begin(camera, pixelRatio, sky) {
     const { gl, canvas } = this;
-    if (this.isLost) return;
+    if (this.isLost || gl.isContextLost()) return false;
     const width = Math.max(1, Math.round(camera.width * pixelRatio));
     const height = Math.max(1, Math.round(camera.height * pixelRatio));
     if (canvas.width !== width || canvas.height !== height) {
@@ -174,9 +191,20 @@ export class GlStage {
     }
     gl.viewport(0, 0, width, height);
     gl.depthMask(true);
-    gl.clearColor(...colours.sky, 1);
+    gl.clearColor(...sky, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    this.#drawingOf(camera, isCoarse)?.draw(camera, look, pixelRatio);
+    return true;
+  }
+
+  /**
+   * Draws lines and areas over what is drawn already.
+   * @param {ViewCamera} camera
+   * @param {number} pixelRatio
+   * @param {SceneDrawing[]} drawings
+   * @param {Record<string, Rgb>} colours
+   * @param {number} slack share of the depth by which faces may be drawn too near to the eye
+   */
+  drawStrokes(camera, pixelRatio, drawings, colours, slack) {
     const { strokes } = this;
     if (!strokes) return;
     strokes.begin(camera, pixelRatio);
