@@ -7,8 +7,9 @@ import { button, element, menu } from '../elements.js';
 import { Terrain } from '../view3d/terrain.js';
 import { ViewCamera, orbitPose } from '../view3d/camera.js';
 import { ViewControls } from '../view3d/controls.js';
-import { movedPose, turnedPose, zoomedPose } from '../view3d/moves.js';
 import { coloursOfFaces, rampColours, readTheme } from '../view3d/theme.js';
+import { lookOfFaces } from '../gl/mesh.js';
+import { oncePerFrame } from '../frame.js';
 import { CloudStage } from './stage.js';
 import { fillLegend } from '../panel/legend.js';
 import { counted } from '../data/numbers.js';
@@ -54,7 +55,7 @@ export class CloudView {
     /** @type {Bounds3|null} */
     this.ofPoints = null;
     this.isSeen = false;
-    this.isAsked = false;
+    this.ask = oncePerFrame(() => this.draw());
     this.isStarting = false;
     this.showsMesh = true;
     this.size = 2;
@@ -106,10 +107,9 @@ export class CloudView {
       this.words,
       element('p', { class: 'view3d-help x-soft' }, CLOUD_HELP),
     );
-    new ViewControls(this.canvas, {
-      turn: (dx, dy) => this.setPose(turnedPose(this.camera, dx, dy)),
-      move: (dx, dy) => this.setPose(movedPose(this.camera, dx, dy)),
-      zoom: (factor, x, y) => this.setPose(zoomedPose(this.camera, factor, x, y, this.bounds)),
+    new ViewControls(this.canvas, this.camera, {
+      setPose: (pose) => this.setPose(pose),
+      bounds: () => this.bounds,
       reset: () => this.goTo('all'),
       centre: () => {},
     });
@@ -262,34 +262,15 @@ export class CloudView {
     this.ask();
   }
 
-  ask() {
-    if (!this.isAsked) {
-      this.isAsked = true;
-      requestAnimationFrame(() => {
-        this.isAsked = false;
-        this.draw();
-      });
-    }
-  }
-
   draw() {
     const { stage, camera, box } = this;
     if (!stage || !this.isSeen || box.clientWidth === 0) {
       return;
     }
-    const { colours, isDark } = readTheme(this.root);
+    const theme = readTheme(this.root);
     camera.fit(box.clientWidth, box.clientHeight, this.bounds);
-    /** @type {import('../gl/mesh.js').TerrainLook} */
-    const look = {
-      source: 'face',
-      span: [0, 1],
-      grid: 0,
-      back: colours.back,
-      gridColour: colours.grid,
-      ambient: isDark ? 0.32 : 0.42,
-    };
     const ratio = Math.min(window.devicePixelRatio || 1, CLOUD_PIXELS);
-    stage.drawCloud(camera, ratio, this.showsMesh ? look : null, this.size, colours.sky);
+    stage.drawCloud(camera, ratio, this.showsMesh ? lookOfFaces(theme) : null, this.size, theme.colours.sky);
     this.frames += 1;
     this.root.dataset.frames = String(this.frames);
   }

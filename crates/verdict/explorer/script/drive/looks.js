@@ -1,6 +1,6 @@
 // How labels, sources and ways look: colours of drive.css, with dashes and marks for those who do not see colours.
 
-import { rgbOfHex } from '../panel/colour.js';
+import { hexOfStyle } from '../panel/colour.js';
 
 /** @typedef {import('./model.js').DriveLabel} DriveLabel */
 /** @typedef {'cross'|'query'|'ring'|'dot'} DriveMark */
@@ -31,18 +31,8 @@ export const SOURCE_COLOURS = [null, 'proximity', 'extrapolated', 'measured'];
 export function readDriveTheme(host) {
   const style = getComputedStyle(host);
   const theme = /** @type {DriveTheme} */ ({});
-  for (const name of DRIVE_COLOURS) {
-    const text = style.getPropertyValue(`--drive-${name}`).trim();
-    theme[name] = /^#[0-9a-fA-F]{6}$/.test(text) ? text : '#808080';
-  }
+  for (const name of DRIVE_COLOURS) { theme[name] = hexOfStyle(style, `--drive-${name}`); }
   return theme;
-}
-
-/** A colour as numbers of 0 to 1, for WebGL. @param {string} hex @param {number} opacity
- * @returns {[number, number, number, number]} */
-export function paintOf(hex, opacity) {
-  const [r, g, b] = rgbOfHex(hex);
-  return [r / 255, g / 255, b / 255, opacity];
 }
 
 /**

@@ -1,6 +1,7 @@
 // The map from above: the elevation map as it was at the chosen frame, with ways, vehicle and sectors.
 
 import { element } from '../elements.js';
+import { oncePerFrame } from '../frame.js';
 import { PlanView } from './plan.js';
 import { PlanDrawing } from './plan_drawing.js';
 import { CellPaint, cellPicture } from './raster.js';
@@ -46,7 +47,8 @@ export class DriveMap {
     });
     /** @type {{key: string, paint: CellPaint, picture: ReturnType<typeof cellPicture>}|null} */
     this.painted = null;
-    this.isAsked = false;
+    /** Draws before the next picture of the screen. */
+    this.ask = oncePerFrame(() => this.draw());
     this.extent = replay.extent();
     new DriveHand(this);
     new ResizeObserver(() => this.resize()).observe(this.canvas);
@@ -104,17 +106,6 @@ export class DriveMap {
     const { view } = this;
     const scale = Math.min(view.width, view.height) / FOLLOWED_METRES;
     view.zoomAbout(scale / view.scale, view.width / 2, view.height / 2);
-  }
-
-  /** Draws before the next picture of the screen. */
-  ask() {
-    if (!this.isAsked) {
-      this.isAsked = true;
-      requestAnimationFrame(() => {
-        this.isAsked = false;
-        this.draw();
-      });
-    }
   }
 
   /** Cells that are seen, within what was ever known; null if none is. */

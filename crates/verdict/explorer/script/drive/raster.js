@@ -1,6 +1,6 @@
 // The cells of the map as a picture: coloured by elevation, source or error, with the shade of hills.
 
-import { MAP_COLOURS, colourTable, packedColour, packedHex } from '../panel/colour.js';
+import { MAP_COLOURS, canvasOfPixels, colourTable, packedColour, packedHex } from '../panel/colour.js';
 import { NO_SLOT } from './replay.js';
 import { SOURCE_COLOURS } from './looks.js';
 
@@ -126,10 +126,5 @@ export function cellPicture(paint, box, isShaded) {
       pixels[(rows - 1 - row) * columns + column] = colour;
     }
   }
-  const canvas = document.createElement('canvas');
-  canvas.width = columns;
-  canvas.height = rows;
-  const image = new ImageData(new Uint8ClampedArray(pixels.buffer), columns, rows);
-  canvas.getContext('2d')?.putImageData(image, 0, 0);
-  return { canvas, left: first, bottom, columns, rows, step };
+  return { canvas: canvasOfPixels(pixels, columns, rows), left: first, bottom, columns, rows, step };
 }

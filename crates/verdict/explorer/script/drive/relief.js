@@ -1,6 +1,6 @@
 // The true ground in grey, from above: what the map does not know yet. Painted once, in parts.
 
-import { packedColour } from '../panel/colour.js';
+import { canvasOfPixels, packedColour } from '../panel/colour.js';
 import { hillShade } from './raster.js';
 
 /** @typedef {import('./ground.js').DriveGround} DriveGround */
@@ -41,12 +41,7 @@ export async function paintRelief(ground, wanted, isDark) {
       began = performance.now();
     }
   }
-  const canvas = document.createElement('canvas');
-  [canvas.width, canvas.height] = [columns, rows];
-  const pixels = greys(heights, columns, rows, step, isDark);
-  const image = new ImageData(new Uint8ClampedArray(pixels.buffer), columns, rows);
-  canvas.getContext('2d')?.putImageData(image, 0, 0);
-  return { canvas, box };
+  return { canvas: canvasOfPixels(greys(heights, columns, rows, step, isDark), columns, rows), box };
 }
 
 /** @param {Float32Array} heights @param {number} columns @param {number} rows @param {number} step metres

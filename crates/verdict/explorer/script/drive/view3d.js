@@ -8,14 +8,16 @@ import { ViewCamera, orbitOfPose, orbitPose } from '../view3d/camera.js';
 import { SceneDrawing } from '../view3d/drawing.js';
 import { boundsOfPoints, cameraPose } from '../view3d/views.js';
 import { ViewControls } from '../view3d/controls.js';
+import { lookOfFaces } from '../gl/mesh.js';
+import { oncePerFrame } from '../frame.js';
 import { coloursOfFaces, rampColours, readTheme } from '../view3d/theme.js';
 import { vecAdd, vecAlong, vecSub, vecTurn } from '../view3d/vector.js';
 import { powerOfTen } from '../view3d/words.js';
-import { paintOf, readDriveTheme } from './looks.js';
+import { sharesOfHex } from '../panel/colour.js';
+import { readDriveTheme } from './looks.js';
 import { DRIVE_SHOWS, view3dElements } from './view3d_elements.js';
-import { movedPose, turnedPose, zoomedPose } from '../view3d/moves.js';
 import { poseOnPlan, poseOnVehicle } from './orbit.js';
-import { DriveOverlay } from './overlay.js';
+import { SceneOverlay } from '../view3d/over.js';
 import { DriveStage } from './stage.js';
 import { DriveScene } from './scene.js';
 import { DriveMounts } from './mounts.js';
@@ -26,7 +28,6 @@ import { CellPaint } from './raster.js';
 /** @typedef {import('../view3d/vector.js').Point3} Point3 */
 /** @typedef {import('../view3d/camera.js').EyePose} EyePose */
 /** @typedef {import('../gl/mesh.js').Rgb} Rgb */
-/** @typedef {import('../gl/mesh.js').TerrainLook} TerrainLook */
 /** @typedef {import('./state.js').DriveState} DriveState */
 /** @typedef {import('./map.js').DriveMap} DriveMap */
 /** @typedef {import('../view3d/view3d.js').PageModel3d} PageModel3d */
@@ -57,7 +58,7 @@ export class DriveView3d {
     /** @type {Set<DriveShow>} */
     this.shown = new Set(DRIVE_SHOWS.map(([name]) => name));
     this.lift = 0.02;
-    this.isAsked = false;
+    this.ask = oncePerFrame((time) => this.next(time));
     this.isSeen = false;
     /** Mean time from picture to picture while they follow each other, milliseconds. */
     this.gap = 0;
@@ -82,11 +83,10 @@ export class DriveView3d {
       },
     });
     this.element = this.elements.root;
-    this.overlay = new DriveOverlay(this.elements.overlay, this.elements.labels);
-    new ViewControls(this.elements.canvas, {
-      turn: (dx, dy) => this.setPose(turnedPose(this.camera, dx, dy)),
-      move: (dx, dy) => this.setPose(movedPose(this.camera, dx, dy)),
-      zoom: (factor, x, y) => this.setPose(zoomedPose(this.camera, factor, x, y, this.bounds)),
+    this.overlay = new SceneOverlay(this.elements.overlay, this.elements.labels);
+    new ViewControls(this.elements.canvas, this.camera, {
+      setPose: (pose) => this.setPose(pose),
+      bounds: () => this.bounds,
       reset: () => this.goTo('vehicle'),
       centre: (x, y) => this.centre(x, y),
     });
@@ -130,13 +130,11 @@ export class DriveView3d {
   }
 
   readColours() {
-    const theme = readTheme(this.element);
-    /** @type {Record<string, Rgb>} */
-    this.colours = { ...theme.colours };
-    this.isDark = theme.isDark;
+    const { colours, isDark } = readTheme(this.element);
+    /** @type {{colours: Record<string, Rgb>, isDark: boolean}} */
+    this.theme = { colours: { ...colours }, isDark };
     for (const [name, hex] of Object.entries(readDriveTheme(this.element))) {
-      const [r, g, b] = paintOf(hex, 1);
-      this.colours[`drive-${name}`] = [r, g, b];
+      this.theme.colours[`drive-${name}`] = sharesOfHex(hex);
     }
   }
 
@@ -211,18 +209,13 @@ export class DriveView3d {
     }
   }
 
-  ask() {
-    if (!this.isAsked) {
-      this.isAsked = true;
-      requestAnimationFrame((time) => {
-        this.isAsked = false;
-        const gap = time - this.lastTime;
-        this.gap = gap < 1000 ? this.gap * 0.6 + gap * 0.4 : this.gap;
-        this.lastTime = time;
-        this.start();
-        this.draw();
-      });
-    }
+  /** @param {number} time of the screen, milliseconds */
+  next(time) {
+    const gap = time - this.lastTime;
+    this.gap = gap < 1000 ? this.gap * 0.6 + gap * 0.4 : this.gap;
+    this.lastTime = time;
+    this.start();
+    this.draw();
   }
 
   /** Something moves: pictures are coarse where they are slow, until all is at rest. */
@@ -293,20 +286,16 @@ export class DriveView3d {
   }
 
   draw() {
-    const { stage, map, camera, state: { choice }, colours, shown } = this;
+    const { stage, map, camera, state: { choice }, theme, shown } = this;
     const { clientWidth: width, clientHeight: height } = this.elements.stage;
-    if (!stage || !map.truth || !colours || !this.isSeen || width === 0 || height === 0) { return; }
+    if (!stage || !map.truth || !theme || !this.isSeen || width === 0 || height === 0) { return; }
     this.refreshSolids();
     this.refreshLines();
     camera.fit(width, height, this.bounds);
     const grid = shown.has('grid') ? Math.max(1, powerOfTen(8 * camera.metresPerPixel) * 10) : 0;
-    /** @type {TerrainLook} */
-    const look = {
-      source: 'face', span: [0, 1], grid, back: colours.back, gridColour: colours.grid,
-      ambient: this.isDark ? 0.32 : 0.42,
-    };
-    stage.drawDrive(camera, this.pixelRatio, shown.has('ground') ? look : null, this.lines, colours);
-    this.overlay.draw(camera, this.lines, colours);
+    const look = { ...lookOfFaces(theme), grid };
+    stage.drawDrive(camera, this.pixelRatio, shown.has('ground') ? look : null, this.lines, theme.colours);
+    this.overlay.draw(camera, [this.lines], theme.colours);
     this.frames += 1;
     Object.assign(this.element.dataset, { frames: String(this.frames), frame: String(choice.frame) });
   }

@@ -18,6 +18,22 @@ import { orderForDrawing } from '../view3d/terrain.js';
  * @property {number} ambient light from everywhere, of 0 to 1
  */
 
+/**
+ * How faces look that have colours of their own, without a grid.
+ * @param {{colours: Record<'back' | 'grid', Rgb>, isDark: boolean}} theme
+ * @returns {TerrainLook}
+ */
+export function lookOfFaces({ colours, isDark }) {
+  return {
+    source: 'face',
+    span: [0, 1],
+    grid: 0,
+    back: colours.back,
+    gridColour: colours.grid,
+    ambient: isDark ? 0.32 : 0.42,
+  };
+}
+
 // What is the same over a face is computed once, at its last vertex. A program without PLACE has no grid and
 // no colours by elevation: it is the fastest.
 const MESH_VERTEX = `

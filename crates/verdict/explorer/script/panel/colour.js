@@ -83,6 +83,18 @@ export function rgbOfHex(hex) {
   return [bits >> 16, (bits >> 8) & 255, bits & 255];
 }
 
+/** A colour as shares of 0 to 1, for WebGL. @param {string} hex `#rrggbb` @returns {Rgb} */
+export function sharesOfHex(hex) {
+  const [r, g, b] = rgbOfHex(hex);
+  return [r / 255, g / 255, b / 255];
+}
+
+/** A colour of a style: `#rrggbb`; grey for anything else. @param {CSSStyleDeclaration} style @param {string} name */
+export function hexOfStyle(style, name) {
+  const text = style.getPropertyValue(name).trim();
+  return /^#[0-9a-fA-F]{6}$/.test(text) ? text : '#808080';
+}
+
 /**
  * A colour as canvases store it: little endian, red in the lowest byte.
  * @param {number} r
@@ -97,6 +109,19 @@ export function packedColour(r, g, b) {
 export function packedHex(hex) {
   const [r, g, b] = rgbOfHex(hex);
   return packedColour(r, g, b);
+}
+
+/**
+ * A canvas with a pixel for each packed colour.
+ * @param {Uint32Array<ArrayBuffer>} pixels @param {number} width @param {number} height
+ */
+export function canvasOfPixels(pixels, width, height) {
+  const canvas = document.createElement('canvas');
+  canvas.width = width;
+  canvas.height = height;
+  const image = new ImageData(new Uint8ClampedArray(pixels.buffer), width, height);
+  canvas.getContext('2d')?.putImageData(image, 0, 0);
+  return canvas;
 }
 
 /** @typedef {'viridis'|'inferno'|'blue-red'} ColourMapName */

@@ -1,7 +1,7 @@
 // Pictures of rasters: one canvas pixel for each cell, with the scale it was coloured by.
 
 import { CLASS_LOOKS, MAP_COLOURS, ONE_SIDED_COLOUR, TOO_NEAR_COLOUR, causeLook } from './colour.js';
-import { colourTable, faceColour, packedColour, packedHex } from './colour.js';
+import { canvasOfPixels, colourTable, faceColour, packedColour, packedHex } from './colour.js';
 import { placeOn, scaleOfDifferences, scaleOfValues, statisticsOf } from '../data/limits.js';
 import { NOTHING, NO_CODE } from '../data/page_model.js';
 import { NO_NAME, ONE_SIDED, SAME_NAME, differenceRaster } from '../data/difference.js';
@@ -190,11 +190,7 @@ export class Painter {
    */
   finish(sensor, pixels, values, scale, statistics, of, channel, unit = channel.unit) {
     const { width, height } = this.data.model.sensors[sensor];
-    const canvas = document.createElement('canvas');
-    canvas.width = width;
-    canvas.height = height;
-    const image = new ImageData(new Uint8ClampedArray(pixels.buffer), width, height);
-    canvas.getContext('2d')?.putImageData(image, 0, 0);
+    const canvas = canvasOfPixels(pixels, width, height);
     return { canvas, pixels, values, scale, statistics, unit, of, channel };
   }
 }

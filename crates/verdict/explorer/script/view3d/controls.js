@@ -1,11 +1,14 @@
-// Mouse, fingers and keys on the canvas: turn, move, zoom.
+// Mouse, fingers and keys on the canvas of a 3-D picture: turn, move and zoom its camera.
 
+import { movedPose, turnedPose, zoomedPose } from './moves.js';
+
+/** @typedef {import('./camera.js').EyePose} EyePose */
+/** @typedef {import('./camera.js').ViewCamera} ViewCamera */
+/** @typedef {import('./terrain.js').Bounds3} Bounds3 */
 /**
  * @typedef {object} ControlActions
- * @property {(dx: number, dy: number) => void} turn by a drag of so many CSS pixels
- * @property {(dx: number, dy: number) => void} move the picture by so many CSS pixels
- * @property {(factor: number, x: number, y: number) => void} zoom distances times a factor, about a place of
- *   the canvas
+ * @property {(pose: EyePose) => void} setPose
+ * @property {() => Bounds3} bounds of everything in the picture
  * @property {() => void} reset
  * @property {(x: number, y: number) => void} centre makes what is seen there the middle of turns
  */
@@ -15,9 +18,10 @@ const KEY_PIXELS = 24;
 
 /** Listens on a canvas. */
 export class ViewControls {
-  /** @param {HTMLElement} canvas @param {ControlActions} actions */
-  constructor(canvas, actions) {
+  /** @param {HTMLElement} canvas @param {ViewCamera} camera @param {ControlActions} actions */
+  constructor(canvas, camera, actions) {
     this.canvas = canvas;
+    this.camera = camera;
     this.actions = actions;
     /** @type {Map<number, {x: number, y: number}>} */
     this.pointers = new Map();
@@ -40,6 +44,21 @@ export class ViewControls {
     this.stop.abort();
   }
 
+  /** By a drag of so many CSS pixels. @param {number} dx @param {number} dy */
+  #turn(dx, dy) {
+    this.actions.setPose(turnedPose(this.camera, dx, dy));
+  }
+
+  /** The picture, by so many CSS pixels. @param {number} dx @param {number} dy */
+  #move(dx, dy) {
+    this.actions.setPose(movedPose(this.camera, dx, dy));
+  }
+
+  /** Distances times a factor, about a place of the canvas. @param {number} factor @param {number} x @param {number} y */
+  #zoom(factor, x, y) {
+    this.actions.setPose(zoomedPose(this.camera, factor, x, y, this.actions.bounds()));
+  }
+
   /** @param {PointerEvent} event */
   #down(event) {
     this.canvas.focus({ preventScroll: true });
@@ -60,16 +79,16 @@ export class ViewControls {
     const now = { x: event.offsetX, y: event.offsetY };
     const [dx, dy] = [now.x - last.x, now.y - last.y];
     if (this.pointers.size === 1) {
-      if (this.moves) this.actions.move(dx, dy);
-      else this.actions.turn(dx, dy);
+      if (this.moves) this.#move(dx, dy);
+      else this.#turn(dx, dy);
     } else if (this.pointers.size === 2) {
       const other = [...this.pointers].find(([id]) => id !== event.pointerId)?.[1] ?? now;
       const before = Math.hypot(last.x - other.x, last.y - other.y);
       const after = Math.hypot(now.x - other.x, now.y - other.y);
       // The middle of two fingers moves by half of what one finger moves.
-      this.actions.move(dx / 2, dy / 2);
+      this.#move(dx / 2, dy / 2);
       if (before > 8 && after > 8)
-        this.actions.zoom(before / after, (now.x + other.x) / 2, (now.y + other.y) / 2);
+        this.#zoom(before / after, (now.x + other.x) / 2, (now.y + other.y) / 2);
     }
     this.pointers.set(event.pointerId, now);
   }
@@ -80,7 +99,7 @@ export class ViewControls {
     const pixels = event.deltaY * (event.deltaMode === 1 ? 18 : event.deltaMode === 2 ? 240 : 1);
     // A pinch on a touch pad comes as a wheel with Ctrl, in small steps.
     const factor = Math.exp(Math.max(-1, Math.min(1, pixels * (event.ctrlKey ? 0.01 : 0.0015))));
-    this.actions.zoom(factor, event.offsetX, event.offsetY);
+    this.#zoom(factor, event.offsetX, event.offsetY);
   }
 
   /** @param {KeyboardEvent} event */
@@ -94,10 +113,10 @@ export class ViewControls {
     });
     const [x, y] = [this.canvas.clientWidth / 2, this.canvas.clientHeight / 2];
     const arrow = arrows[event.key];
-    if (arrow && event.shiftKey) this.actions.move(...arrow);
-    else if (arrow) this.actions.turn(...arrow);
-    else if (event.key === '+' || event.key === '=') this.actions.zoom(0.8, x, y);
-    else if (event.key === '-' || event.key === '_') this.actions.zoom(1.25, x, y);
+    if (arrow && event.shiftKey) this.#move(...arrow);
+    else if (arrow) this.#turn(...arrow);
+    else if (event.key === '+' || event.key === '=') this.#zoom(0.8, x, y);
+    else if (event.key === '-' || event.key === '_') this.#zoom(1.25, x, y);
     else if (event.key === 'Home') this.actions.reset();
     else return;
     event.preventDefault();

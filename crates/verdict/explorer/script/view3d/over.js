@@ -19,33 +19,33 @@ import { lengthInWords, roundStep } from './words.js';
 
 /** Device pixels per CSS pixel of the marks, at most. */
 const MARK_PIXEL_RATIO = 3;
+/** Length of the bar of scale, CSS pixels, at most. */
+const SCALE_LENGTH = 130;
+const SCALE_FONT = '600 12px system-ui, sans-serif';
 
-/** The layers over the canvas. */
-export class OverPicture {
-  /** @param {ViewPanel} panel @param {PageModel3d} model */
-  constructor(panel, model) {
-    this.panel = panel;
-    this.model = model;
-    this.labels = new LabelLayer(panel.labels);
-    this.overlay = new OverlayCanvas(panel.overlay);
-    this.font = `600 12px ${getComputedStyle(panel.root).fontFamily}`;
+/** The labels and marks of drawings over any 3-D picture, and its bar of scale. */
+export class SceneOverlay {
+  /** @param {HTMLCanvasElement} canvas @param {HTMLElement} labels */
+  constructor(canvas, labels) {
+    this.overlay = new OverlayCanvas(canvas);
+    this.labels = new LabelLayer(labels);
   }
 
   /**
    * @param {ViewCamera} camera
    * @param {SceneDrawing[]} drawings
-   * @param {Record<ColourName, Rgb3>} colours
-   * @param {RayStory | null} story
+   * @param {Record<string, Rgb3>} colours
+   * @param {() => void} [drawBelow] draws what lies below the marks
    */
-  draw(camera, drawings, colours, story) {
+  draw(camera, drawings, colours, drawBelow) {
     const { overlay } = this;
     const { width, height } = camera;
-    const css = (/** @type {ColourName} */ name, opacity = 1) => cssOfColour(colours[name], opacity);
+    const css = (/** @type {string} */ name) => cssOfColour(colours[name]);
     overlay.begin(width, height, Math.min(window.devicePixelRatio || 1, MARK_PIXEL_RATIO));
-    if (this.panel.root.dataset.view === 'camera') this.#drawFrame(camera, story, css);
+    drawBelow?.();
     /** @type {LabelBox[]} */
     const taken = [];
-    /** @type {{x: number, y: number, shape: MarkShape, colour: ColourName}[]} */
+    /** @type {{x: number, y: number, shape: MarkShape, colour: string}[]} */
     const marks = [];
     /** @type {PlacedLabel[]} */
     const placed = [];
@@ -66,12 +66,35 @@ export class OverPicture {
     }
     if (camera.pose.lens.kind === 'angle') {
       const scale = camera.metresPerPixel;
-      const length = roundStep(Math.min(130, width / 3) * scale);
+      const length = roundStep(Math.min(SCALE_LENGTH, width / 3) * scale);
       taken.push({ left: 0, top: height - 36, right: length / scale + 30, bottom: height });
-      overlay.scaleBar(length / scale, lengthInWords(length), height, css('ink'), css('sky'), this.font);
+      overlay.scaleBar(length / scale, lengthInWords(length), height, css('ink'), css('sky'), SCALE_FONT);
     }
     overlay.leaders(this.labels.show(placed, width, height, taken));
     for (const { x, y, shape, colour } of marks) overlay.mark(x, y, shape, css(colour), css('paper'));
+  }
+}
+
+/** The layers over the picture of rays: also the frame of the camera's image. */
+export class OverPicture {
+  /** @param {ViewPanel} panel @param {PageModel3d} model */
+  constructor(panel, model) {
+    this.panel = panel;
+    this.model = model;
+    this.scene = new SceneOverlay(panel.overlay, panel.labels);
+  }
+
+  /**
+   * @param {ViewCamera} camera
+   * @param {SceneDrawing[]} drawings
+   * @param {Record<ColourName, Rgb3>} colours
+   * @param {RayStory | null} story
+   */
+  draw(camera, drawings, colours, story) {
+    const css = (/** @type {ColourName} */ name, opacity = 1) => cssOfColour(colours[name], opacity);
+    this.scene.draw(camera, drawings, colours, () => {
+      if (this.panel.root.dataset.view === 'camera') this.#drawFrame(camera, story, css);
+    });
   }
 
   /**
@@ -90,11 +113,12 @@ export class OverPicture {
       width: across * cell,
       height: down * cell,
     });
-    this.overlay.frame(box([0, 0, lens.width, lens.height]), width, height, css('sky', 0.72), css('soft'));
+    const { overlay } = this.scene;
+    overlay.frame(box([0, 0, lens.width, lens.height]), width, height, css('sky', 0.72), css('soft'));
     if (!story) return;
     const isOwn = this.model.sensors[story.sensor].kind === 'camera';
     const image = isOwn ? { u: story.i, v: story.j, onImage: true } : story.view?.image;
     if (!image?.onImage) return;
-    this.overlay.cell(box([Math.floor(image.u), Math.floor(image.v), 1, 1]), css('seen'), css('paper'));
+    overlay.cell(box([Math.floor(image.u), Math.floor(image.v), 1, 1]), css('seen'), css('paper'));
   }
 }

@@ -1,6 +1,7 @@
 // The elements of the 3-D panel: buttons of views, switches, canvas, key of colours, caption.
 
-import { cssOfColour, colourOfMaterial, rampGradient } from './theme.js';
+import { gradientOf } from '../panel/colour.js';
+import { cssOfColour, colourOfMaterial } from './theme.js';
 import { digitsOf } from './words.js';
 
 /** @typedef {import('./theme.js').ColourName} ColourName */
@@ -238,7 +239,7 @@ export class ViewPanel {
         by === 'slope' ? ['level', 'upright'] : heights.map((height) => `${digitsOf(height, 4)} m`);
       const entry = panelElement('span', 'view3d-entry');
       const sample = panelElement('i', 'ramp');
-      sample.style.setProperty('--sample', rampGradient());
+      sample.style.setProperty('--sample', gradientOf('viridis'));
       entry.append(low, sample, high);
       parts.push(entry);
     }

@@ -3,10 +3,10 @@
 
 import { vecAlong, vecLength, vecSub } from './vector.js';
 import { ViewCamera, orbitOfPose, orbitPose, poseBetween } from './camera.js';
+import { lookOfFaces } from '../gl/mesh.js';
 import { GlStage } from '../gl/stage.js';
 import { OverPicture } from './over.js';
 import { keyOfPicture } from './key.js';
-import { movedPose, turnedPose, zoomedPose } from './moves.js';
 import { ViewControls } from './controls.js';
 import { coloursOfFaces, rampColours, readTheme } from './theme.js';
 import { SceneDrawing } from './drawing.js';
@@ -77,10 +77,9 @@ export class ViewPicture {
     this.coarse = false;
     this.restTimer = 0;
     this.travel = 0;
-    this.controls = new ViewControls(panel.canvas, {
-      turn: (dx, dy) => this.#setByHand(turnedPose(this.camera, dx, dy)),
-      move: (dx, dy) => this.#setByHand(movedPose(this.camera, dx, dy)),
-      zoom: (factor, x, y) => this.#setByHand(zoomedPose(this.camera, factor, x, y, this.everything)),
+    this.controls = new ViewControls(panel.canvas, this.camera, {
+      setPose: (pose) => this.#setByHand(pose),
+      bounds: () => this.everything,
       reset: () => this.onReset(),
       centre: (x, y) => {
         this.#centre(x, y);
@@ -249,7 +248,7 @@ export class ViewPicture {
     if (width === 0 || height === 0) return;
     camera.fit(width, height, this.everything);
     const ratio = Math.min(window.devicePixelRatio || 1, MOST_PIXEL_RATIO);
-    const { colours, isDark } = this.theme;
+    const { colours } = this.theme;
     const { bounds } = this.terrain ?? { bounds: null };
     const by = panel.terrainColour;
     // Seen from a sensor, a sheet would lie over the whole image.
@@ -265,12 +264,10 @@ export class ViewPicture {
       camera,
       this.coarse ? ratio / 2 : ratio,
       {
+        ...lookOfFaces(this.theme),
         source: by === 'elevation' || by === 'slope' ? by : 'face',
         span: by === 'slope' ? [0, Math.PI / 2] : bounds ? [bounds.low[2], bounds.high[2]] : [0, 1],
         grid: panel.isShown('grid') && !this.coarse ? powerOfTen(8 * camera.metresPerPixel) * 10 : 0,
-        back: colours.back,
-        gridColour: colours.grid,
-        ambient: isDark ? 0.32 : 0.42,
       },
       drawings,
       colours,
