@@ -77,7 +77,7 @@ export class Container {
  * @param {string} text
  * @returns {Uint8Array<ArrayBuffer>}
  */
-export function bytesOfBase64(text) {
+function bytesOfBase64(text) {
   const fromBase64 = /** @type {any} */ (Uint8Array).fromBase64;
   if (typeof fromBase64 === 'function') {
     return fromBase64.call(Uint8Array, text);
@@ -120,7 +120,7 @@ async function inflated(bytes, length) {
  * @param {number} size bytes of one number
  * @returns {Uint8Array<ArrayBuffer>}
  */
-export function interleavedPlanes(bytes, size) {
+function interleavedPlanes(bytes, size) {
   if (size === 1) {
     return bytes;
   }
@@ -147,7 +147,7 @@ export function interleavedPlanes(bytes, size) {
  * @param {Uint8Array<ArrayBuffer>} bytes
  * @param {number} size
  */
-export function sumUp(bytes, size) {
+function sumUp(bytes, size) {
   if (size === 8) {
     const words = new BigUint64Array(bytes.buffer, bytes.byteOffset, bytes.length / 8);
     for (let i = 1; i < words.length; i += 1) {
@@ -167,7 +167,7 @@ export function sumUp(bytes, size) {
  * @param {Uint8Array<ArrayBuffer>} bytes
  * @param {Uint8Array} others
  */
-export function flipBits(bytes, others) {
+function flipBits(bytes, others) {
   if (bytes.length !== others.length) {
     throw new Error('arrays of unlike length');
   }

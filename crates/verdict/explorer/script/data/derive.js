@@ -8,7 +8,7 @@
  */
 
 /** Channels that follow from face and ray. */
-export const DERIVED_CHANNELS = [
+const DERIVED_CHANNELS = [
   'range.T',
   'depth.Z',
   'P.X',
@@ -27,7 +27,7 @@ export const DERIVED_CHANNELS = [
  * @param {SensorModel} sensor
  * @returns {(i: number, j: number, into: Float64Array) => void}
  */
-export function rayMaker(sensor) {
+function rayMaker(sensor) {
   const { position, quaternion } = sensor.pose;
   const [px, py, pz] = position;
   const [ux, uy, uz, w] = quaternion;

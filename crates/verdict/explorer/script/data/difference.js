@@ -9,7 +9,7 @@ import { isNamed } from './channels.js';
 
 /** Codes of a raster of differences of names: faces, visibility. */
 export const SAME_NAME = 0;
-export const OTHER_NAME = 1;
+const OTHER_NAME = 1;
 export const ONE_SIDED = 2;
 export const NO_NAME = 255;
 

@@ -220,7 +220,7 @@ export class DriveMap {
 
 /** Everything that the map may show: all cells ever known, and both ways. @param {MapReplay} replay
  * @returns {PlanBox} */
-export function wholePlan(replay) {
+function wholePlan(replay) {
   const { record } = replay;
   const box = { left: Infinity, bottom: Infinity, right: -Infinity, top: -Infinity };
   const add = (/** @type {number} */ x, /** @type {number} */ y, /** @type {number} */ room) => {

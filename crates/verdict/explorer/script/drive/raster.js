@@ -25,7 +25,7 @@ export function hillShade(slopeX, slopeY) {
 }
 
 /** A colour, made darker or lighter. @param {number} packed @param {number} factor 1: as it is */
-export function shadedColour(packed, factor) {
+function shadedColour(packed, factor) {
   const part = (/** @type {number} */ value) => Math.min(255, Math.round(value * factor));
   return packedColour(part(packed & 255), part((packed >> 8) & 255), part((packed >> 16) & 255));
 }

@@ -14,7 +14,7 @@ import { degreesOf } from './sectors.js';
 /** @typedef {import('./map.js').DriveMap} DriveMap */
 
 /** A length in metres, to a tenth of a millimetre. @param {number} value */
-export function metres(value) {
+function metres(value) {
   return Number.isNaN(value) ? 'none' : `${value.toFixed(4).replace('-', '−')} m`;
 }
 

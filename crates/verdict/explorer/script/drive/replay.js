@@ -6,7 +6,7 @@
 /** @typedef {import('./model.js').DriveRecord} DriveRecord */
 
 /** Cells along a side of a tile. Only tiles that ever had a known cell are in memory. */
-export const TILE_SIDE = 64;
+const TILE_SIDE = 64;
 const TILE_CELLS = TILE_SIDE * TILE_SIDE;
 
 /** Cell of which nothing was ever known. */

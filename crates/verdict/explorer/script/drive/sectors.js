@@ -16,7 +16,7 @@ export function halfWidth(sectors, index) {
 }
 
 /** The turn from one direction to another, -pi to pi. @param {number} from @param {number} to */
-export function turnBetween(from, to) {
+function turnBetween(from, to) {
   const turn = (to - from) % (2 * Math.PI);
   return turn > Math.PI ? turn - 2 * Math.PI : turn < -Math.PI ? turn + 2 * Math.PI : turn;
 }

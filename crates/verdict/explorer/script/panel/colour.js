@@ -78,7 +78,7 @@ export function causeLook(cause) {
 }
 
 /** @param {string} hex `#rrggbb` @returns {Rgb} */
-export function rgbOfHex(hex) {
+function rgbOfHex(hex) {
   const bits = Number.parseInt(hex.slice(1), 16);
   return [bits >> 16, (bits >> 8) & 255, bits & 255];
 }

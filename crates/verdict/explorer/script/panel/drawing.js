@@ -157,7 +157,7 @@ function cellTicks(first, end, scale, room, wordsOf) {
  * @param {number} room pixels
  * @returns {{at: number, words: string}[]}
  */
-export function ticksAlong(axis, first, end, scale, room) {
+function ticksAlong(axis, first, end, scale, room) {
   const { at } = axis;
   const count = at.length;
   const each = Math.abs(at[count - 1] - at[0]) / Math.max(1, count - 1);

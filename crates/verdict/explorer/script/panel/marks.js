@@ -155,7 +155,7 @@ function label(context, text, x, y, ratio) {
  * @param {CanvasRenderingContext2D|Path2D} path @param {string} shape @param {number} x @param {number} y
  * @param {number} r
  */
-export function shapePath(path, shape, x, y, r) {
+function shapePath(path, shape, x, y, r) {
   /** @param {[number, number][]} corners */
   const polygon = (corners) => {
     corners.forEach(([dx, dy], k) =>

@@ -24,7 +24,7 @@ export function recordedWords(value, isGiven, channel) {
 }
 
 /** What a number that is not finite stands for. (REP-117) @param {number} value */
-export function noValueWords(value) {
+function noValueWords(value) {
   return value === -Infinity ? 'too near' : 'no hit';
 }
 

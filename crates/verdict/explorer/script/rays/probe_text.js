@@ -9,7 +9,7 @@ import { element } from '../elements.js';
  * @param {string} text
  * @returns {ProbeBlock[]}
  */
-export function probeBlocks(text) {
+function probeBlocks(text) {
   /** @type {ProbeBlock[]} */
   const blocks = [];
   for (const line of text.split('\n')) {

@@ -253,7 +253,7 @@ function shownChannel(channel) {
 }
 
 /** @param {string} name @param {string} text @param {number} value */
-export function readoutSpan(name, text, value) {
+function readoutSpan(name, text, value) {
   return element('span', { 'data-readout': name, 'data-value': String(value) }, text);
 }
 

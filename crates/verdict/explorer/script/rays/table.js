@@ -224,7 +224,7 @@ export class RayTable {
 }
 
 /** @param {number} difference */
-export function rangeWords(difference) {
+function rangeWords(difference) {
   if (difference === undefined || Number.isNaN(difference)) {
     return '';
   }
@@ -232,6 +232,6 @@ export function rangeWords(difference) {
 }
 
 /** @param {number} change @param {string} unit */
-export function fluxWords(change, unit) {
+function fluxWords(change, unit) {
   return change === undefined || Number.isNaN(change) ? '' : signedWithUnit(change, unit, 3);
 }

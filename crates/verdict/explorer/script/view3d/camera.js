@@ -22,7 +22,7 @@ import { vecAlong, vecCross, vecDot, vecLength, vecScale, vecSub, vecUnit } from
 const FREE_ANGLE = (40 * Math.PI) / 180;
 
 /** The lens of the free eye. @returns {Lens} */
-export function freeLens() {
+function freeLens() {
   return { kind: 'angle', angle: FREE_ANGLE };
 }
 

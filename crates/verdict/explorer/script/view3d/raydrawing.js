@@ -107,7 +107,7 @@ export function drawWireframe(drawing, faces, terrain) {
 }
 
 /** How far a ray without a hit is drawn. @param {RayStory} story */
-export function missLength(story) {
+function missLength(story) {
   const ranges = story.sides.flatMap((side) => (side.hit ? [side.hit.range] : []));
   if (story.exact?.range) ranges.push(story.exact.range);
   if (story.here) ranges.push(story.here.range);

@@ -50,7 +50,7 @@ function groundHeight(model, ground) {
  * @param {number} height of the ground
  * @returns {Point3}
  */
-export function groundAhead(sensor, height) {
+function groundAhead(sensor, height) {
   const ray = rayOfPlace(sensor, (sensor.width - 1) / 2, (sensor.height - 1) / 2);
   const origin = sensor.pose.position;
   if (!ray) return origin;
