@@ -17,7 +17,7 @@ import { downloadText, raysAsCsv } from './rays/csv.js';
 import { countWords, counted } from './data/numbers.js';
 import { choiceOfHash, hashOfChoice } from './data/page_hash.js';
 import { Keyboard, helpDialog } from './keyboard.js';
-import { explorerKeys } from './explorer_keys.js';
+import { EXPLORER_HELP, explorerKeys } from './explorer_keys.js';
 import { Geometry } from './panel/geometry.js';
 import { CloudView } from './cloud/view.js';
 
@@ -95,7 +95,7 @@ export class Explorer {
     this.filters = new Filters(model, this.rays, () => this.listChanged());
     this.table = new RayTable(model, this.rays, (row) => this.chooseRow(row));
     const keys = explorerKeys(this);
-    this.help = helpDialog(keys);
+    this.help = helpDialog('Pictures: mouse and keys', EXPLORER_HELP, keys);
     this.keyboard = new Keyboard(root, keys);
     this.timer = 0;
     this.listWords = element(

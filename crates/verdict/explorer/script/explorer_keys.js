@@ -9,6 +9,10 @@ const PAN_STEP = 0.12;
 /** @type {Record<string, [number, number]>} */
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
+export const EXPLORER_HELP =
+  'Wheel or two fingers: zoom about the pointer. Drag: move. Click: select a cell. Keys ' +
+  'work while a picture or another part of this section has the focus.';
+
 /** @param {Explorer} explorer @returns {KeyEntry[]} */
 export function explorerKeys(explorer) {
   const { state } = explorer;

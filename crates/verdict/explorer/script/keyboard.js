@@ -5,7 +5,16 @@ import { button, element } from './elements.js';
 /** @typedef {{keys: string[], words: string, run: (event: KeyboardEvent) => void}} KeyEntry */
 
 /** Names of keys that people know otherwise. @type {Record<string, string>} */
-const KEY_NAMES = { ArrowLeft: '←', ArrowRight: '→', ArrowUp: '↑', ArrowDown: '↓', Escape: 'Esc' };
+const KEY_NAMES = {
+  ArrowLeft: '←',
+  ArrowRight: '→',
+  ArrowUp: '↑',
+  ArrowDown: '↓',
+  Escape: 'Esc',
+  PageUp: 'Page up',
+  PageDown: 'Page down',
+  ' ': 'Space',
+};
 
 export class Keyboard {
   /**
@@ -50,9 +59,12 @@ export class Keyboard {
   }
 }
 
-/** @param {KeyEntry[]} entries */
-export function helpDialog(entries) {
-  const rows = entries.map(({ keys, words }) =>
+/**
+ * The dialog that lists keys.
+ * @param {string} title @param {string} words what the mouse does @param {{keys: string[], words: string}[]} entries
+ */
+export function helpDialog(title, words, entries) {
+  const rows = entries.map(({ keys, words: action }) =>
     element(
       'tr',
       {},
@@ -61,19 +73,14 @@ export function helpDialog(entries) {
         { scope: 'row' },
         ...keys.flatMap((key, k) => [...(k > 0 ? [' '] : []), element('kbd', {}, KEY_NAMES[key] ?? key)]),
       ),
-      element('td', {}, words),
+      element('td', {}, action),
     ),
   );
   const dialog = element(
     'dialog',
     { class: 'x-help', 'aria-labelledby': 'x-help-title' },
-    element('h3', { id: 'x-help-title' }, 'Pictures: mouse and keys'),
-    element(
-      'p',
-      {},
-      'Wheel or two fingers: zoom about the pointer. Drag: move. Click: select a cell. Keys ' +
-        'work while a picture or another part of this section has the focus.',
-    ),
+    element('h3', { id: 'x-help-title' }, title),
+    element('p', {}, words),
     element('table', {}, element('tbody', {}, ...rows)),
   );
   dialog.append(button('Close', () => dialog.close(), { class: 'x-close' }));

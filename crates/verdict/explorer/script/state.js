@@ -40,38 +40,44 @@ export const PLAIN_DRAWING = {
   isLogOfDifferences: null,
 };
 
-export class State {
-  /** @param {Choice} choice */
+/**
+ * What can be chosen, and who wants to know when it changes.
+ * @template {object} C
+ */
+export class Choices {
+  /** @param {C} choice */
   constructor(choice) {
     this.choice = choice;
-    /** @type {Set<(changed: Set<keyof Choice>) => void>} */
+    /** @type {Set<(changed: Set<keyof C>) => void>} */
     this.listeners = new Set();
   }
 
   /**
    * Changes some of it and tells the listeners what has changed.
-   * @param {Partial<Choice>} changes
+   * @param {Partial<C>} changes
    */
   set(changes) {
-    /** @type {Set<keyof Choice>} */
-    const changed = new Set();
-    for (const [key, value] of Object.entries(changes)) {
-      const name = /** @type {keyof Choice} */ (key);
-      if (this.choice[name] !== value) {
-        changed.add(name);
-      }
-    }
+    const names = /** @type {(keyof C)[]} */ (Object.keys(changes));
+    const changed = new Set(names.filter((name) => !isSame(this.choice[name], changes[name])));
     if (changed.size > 0) {
       this.choice = { ...this.choice, ...changes };
       this.listeners.forEach((listener) => listener(changed));
     }
   }
 
-  /** @param {(changed: Set<keyof Choice>) => void} listener */
+  /** @param {(changed: Set<keyof C>) => void} listener */
   listen(listener) {
     this.listeners.add(listener);
   }
+}
 
+/** Whether two values are the same; pairs of numbers are if their numbers are. @param {unknown} a @param {unknown} b */
+function isSame(a, b) {
+  return a === b || (Array.isArray(a) && Array.isArray(b) && a[0] === b[0] && a[1] === b[1]);
+}
+
+/** What is chosen in the explorer. @extends {Choices<Choice>} */
+export class State extends Choices {
   /** The cell that is read out: that under the pointer, else the selected one. */
   get reading() {
     const { hover, sensor, cell } = this.choice;

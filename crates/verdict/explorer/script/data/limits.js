@@ -79,8 +79,8 @@ function sampleOf(values, nothing, count, ofSizes) {
   return sample.slice(0, found).sort();
 }
 
-/** @param {Float64Array} sorted @param {number} share 0 to 1 */
-function percentile(sorted, share) {
+/** @param {ArrayLike<number>} sorted @param {number} share 0 to 1 */
+export function percentile(sorted, share) {
   return sorted.length === 0 ? NaN : sorted[Math.round(share * (sorted.length - 1))];
 }
 

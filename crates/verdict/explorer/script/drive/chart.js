@@ -170,7 +170,7 @@ export function driveCharts(state, replay) {
     new TimeChart(state, replay, 'Believed minus true position', 'm', differences, millimetres),
     new TimeChart(state, replay, 'Known cells of the elevation map', '', cells, countWords),
   ];
-  state.onChange((changed) => { if (changed.has('frame')) { charts.forEach((chart) => chart.show()); } });
+  state.listen((changed) => { if (changed.has('frame')) { charts.forEach((chart) => chart.show()); } });
   const boxes = charts.map((chart) => chart.element);
   return element('div', { class: 'drive-charts', 'data-drive-charts': true }, ...boxes);
 }

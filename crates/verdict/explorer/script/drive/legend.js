@@ -4,7 +4,7 @@ import { inkOn, packedHex } from '../panel/colour.js';
 import { element } from '../elements.js';
 import { DRIVE_LABELS, DRIVE_SOURCES } from './model.js';
 import { LABEL_LOOKS, SOURCE_COLOURS, labelSwatch } from './looks.js';
-import { scaleBar } from './scale.js';
+import { CLIPPED_WORDS, colourBar } from '../panel/legend.js';
 import { SOURCE_MARKS } from './cell_marks.js';
 
 /** @typedef {import('./state.js').DriveState} DriveState */
@@ -14,7 +14,7 @@ import { SOURCE_MARKS } from './cell_marks.js';
 export function driveLegend(state, map) {
   const host = element('div', { class: 'drive-legend', 'data-drive-legend': true });
   const show = () => host.replaceChildren(colours(state, map), keys(map));
-  state.onChange((changed) => { if (changed.has('colouring')) { show(); } });
+  state.listen((changed) => { if (changed.has('colouring')) { show(); } });
   show();
   return { element: host, show };
 }
@@ -31,24 +31,27 @@ function colours(state, map) {
         block.style.background = map.theme[name];
         block.style.color = inkOn(packedHex(map.theme[name]));
       }
-      return element('span', { class: 'drive-entry' }, block, DRIVE_SOURCES[source]);
+      return element('span', { class: 'x-key' }, block, DRIVE_SOURCES[source]);
     });
-    return element('div', { class: 'drive-keys' }, ...entries);
+    return element('div', { class: 'x-keys' }, ...entries);
   }
   if (!scale) {
     return element('p', { class: 'drive-soft' }, 'The true ground is not known.');
   }
-  return colouring === 'elevation'
-    ? scaleBar(scale, 'elevation, z', map.record.origin[2])
-    : scaleBar(scale, 'elevation of the map minus true height', 0);
+  // Elevations are read in the global frame.
+  const [title, shift] = colouring === 'elevation'
+    ? ['elevation, z', map.record.origin[2]] : ['elevation of the map minus true height', 0];
+  const shifted = { ...scale, low: scale.low + shift, high: scale.high + shift };
+  return element('div', { 'data-drive-scale': true }, colourBar(shifted, 'm', title, map.view.width),
+    element('div', { class: 'x-keys' }, scale.isClipped ? CLIPPED_WORDS : ''));
 }
 
 /** @param {DriveMap} map */
 function keys(map) {
   const entry = (/** @type {Element} */ sample, /** @type {string} */ words) => (
-    element('span', { class: 'drive-entry' }, sample, words));
+    element('span', { class: 'x-key' }, sample, words));
   const line = (/** @type {string} */ kind) => element('i', { class: `drive-line drive-line-${kind}` });
-  return element('div', { class: 'drive-keys' },
+  return element('div', { class: 'x-keys' },
     entry(line('true'), 'true way and vehicle'), entry(line('believed'), 'believed way and vehicle'),
     ...DRIVE_LABELS.map((label) => entry(labelSwatch(label, map.theme), `sector: ${LABEL_LOOKS[label].words}`)));
 }

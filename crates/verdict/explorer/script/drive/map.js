@@ -6,7 +6,8 @@ import { PlanView } from './plan.js';
 import { PlanDrawing } from './plan_drawing.js';
 import { CellPaint, cellPicture } from './raster.js';
 import { drawCellMarks } from './cell_marks.js';
-import { DriveHand } from './hand.js';
+import { PictureHand } from '../panel/hand.js';
+import { mapKeys } from './keys.js';
 import { sectorAt } from './sectors.js';
 
 /** @typedef {import('./state.js').DriveState} DriveState */
@@ -16,7 +17,7 @@ import { sectorAt } from './sectors.js';
 /** @typedef {import('./relief.js').Relief} Relief */
 /** @typedef {import('./relief.js').PlanBox} PlanBox */
 /** @typedef {import('./looks.js').DriveTheme} DriveTheme */
-/** @typedef {import('./scale.js').MapScale} MapScale */
+/** @typedef {import('../data/limits.js').ColourScale} ColourScale */
 
 /** Metres that are seen at least of a map that follows the vehicle. */
 const FOLLOWED_METRES = 10;
@@ -31,9 +32,9 @@ export class DriveMap {
     this.replay = replay;
     this.record = replay.record;
     this.theme = theme;
-    /** @type {MapScale|null} */
+    /** @type {ColourScale|null} */
     this.elevations = null;
-    /** @type {MapScale|null} */
+    /** @type {ColourScale|null} */
     this.errors = null;
     /** @type {CellTruth|null} */
     this.truth = null;
@@ -50,16 +51,29 @@ export class DriveMap {
     /** Draws before the next picture of the screen. */
     this.ask = oncePerFrame(() => this.draw());
     this.extent = replay.extent();
-    new DriveHand(this);
+    new PictureHand(this.canvas, this.view, {
+      place: (event) => this.place(event),
+      pointed: (x, y, isHover) => this.pointed(x, y, isHover),
+      left: () => state.set({ hoverCell: null, hoverSector: -1 }),
+      panned: () => {
+        state.set({ mapFollows: false });
+        this.ask();
+      },
+      zoomed: () => {
+        this.follow();
+        this.ask();
+      },
+    });
+    mapKeys(this);
     new ResizeObserver(() => this.resize()).observe(this.canvas);
-    state.onChange((changed) => {
+    state.listen((changed) => {
       if (changed.has('mapFollows') && state.choice.mapFollows && this.view.isFitted) { this.comeNear(); }
       if (changed.has('frame') || changed.has('mapFollows')) { this.follow(); }
       if ([...changed].some((key) => !BESIDE_THE_MAP.has(key))) { this.ask(); }
     });
   }
 
-  /** The ground is known from now on. @param {CellTruth} truth @param {MapScale} errors */
+  /** The ground is known from now on. @param {CellTruth} truth @param {ColourScale} errors */
   setTruth(truth, errors) {
     this.truth = truth;
     this.errors = errors;
@@ -184,24 +198,25 @@ export class DriveMap {
     drawCellMarks(context, view, this.painted.paint, box, record.origin[2]);
   }
 
+  /** The place of a pointer in the picture, CSS pixels. @param {{clientX: number, clientY: number}} event
+   * @returns {[number, number]} */
+  place(event) {
+    const box = this.canvas.getBoundingClientRect();
+    const { clientLeft, clientTop } = this.canvas;
+    return [event.clientX - box.left - clientLeft, event.clientY - box.top - clientTop];
+  }
+
   /**
    * The pointer is at a place, or clicked it.
-   * @param {number} x CSS pixels @param {number} y @param {boolean} isClick
+   * @param {number} x CSS pixels @param {number} y @param {boolean} isHover
    */
-  pointed(x, y, isClick) {
+  pointed(x, y, isHover) {
     const place = this.view.placeAt(x, y);
     const cell = this.replay.cellAt(...place);
     const { obstacles, state } = this;
     const sector = obstacles && state.choice.hasSectors ? sectorAt(obstacles, ...place) : -1;
-    if (isClick) {
-      state.set({ cell, sector, hoverCell: null, hoverSector: -1 });
-    } else {
-      state.set({ hoverCell: cell, hoverSector: sector });
-    }
-  }
-
-  left() {
-    this.state.set({ hoverCell: null, hoverSector: -1 });
+    state.set(isHover
+      ? { hoverCell: cell, hoverSector: sector } : { cell, sector, hoverCell: null, hoverSector: -1 });
   }
 
   /** Moves the cell cursor. @param {number} di @param {number} dj */

@@ -18,7 +18,7 @@ import { button, element, menu } from '../elements.js';
 import { DriveRecord } from './model.js';
 import { MapReplay } from './replay.js';
 import { DriveGround } from './ground.js';
-import { DriveState } from './state.js';
+import { plainDriveState } from './state.js';
 import { DriveTimeline } from './timeline.js';
 import { DriveMap } from './map.js';
 import { DriveReadout } from './readout.js';
@@ -61,7 +61,7 @@ export class DrivePanel {
       element('p', { class: 'drive-soft', role: 'status' }, 'The drive is being read.'));
     Object.assign(this.root.dataset, { state: 'loading', ground: 'loading' });
     host.append(this.root);
-    this.state = new DriveState();
+    this.state = plainDriveState();
     this.hashTimer = 0;
     /** @type {DriveView3d|null} */
     this.view3d = null;
@@ -87,7 +87,7 @@ export class DrivePanel {
     this.followHash();
     this.build(this.map);
     this.root.dataset.state = 'ready';
-    this.state.onChange((changed) => this.changed(changed));
+    this.state.listen((changed) => this.changed(changed));
     window.addEventListener('hashchange', () => this.followHash());
     window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.retheme());
     this.changed(new Set(/** @type {const} */ (['frame'])));
@@ -110,7 +110,7 @@ export class DrivePanel {
     const colours = menu('colours of the map', COLOURINGS, state.choice.colouring,
       (value) => state.set({ colouring: /** @type {MapColouring} */ (value) }));
     colours.dataset.driveColouring = '';
-    state.onChange((changed) => { if (changed.has('colouring')) { colours.value = state.choice.colouring; } });
+    state.listen((changed) => { if (changed.has('colouring')) { colours.value = state.choice.colouring; } });
     const keys = driveKeys(this);
     const bar = element('div', { class: 'drive-row', role: 'toolbar', 'aria-label': 'Map' },
       element('label', {}, 'colours ', colours), ...MAP_SWITCHES.map(([key, words]) => this.switch(key, words)),
@@ -136,7 +136,7 @@ export class DrivePanel {
   switch(key, words) {
     const box = element('input', { type: 'checkbox', checked: this.state.choice[key], 'data-drive-switch': key });
     box.addEventListener('change', () => this.state.set({ [key]: box.checked }));
-    this.state.onChange((changed) => { if (changed.has(key)) { box.checked = this.state.choice[key]; } });
+    this.state.listen((changed) => { if (changed.has(key)) { box.checked = this.state.choice[key]; } });
     return element('label', {}, box, ` ${words}`);
   }
 

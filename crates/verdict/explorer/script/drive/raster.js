@@ -1,13 +1,14 @@
 // The cells of the map as a picture: coloured by elevation, source or error, with the shade of hills.
 
-import { MAP_COLOURS, canvasOfPixels, colourTable, packedColour, packedHex } from '../panel/colour.js';
+import { canvasOfPixels, packedColour, packedHex } from '../panel/colour.js';
+import { coloursOf } from '../panel/painter.js';
 import { NO_SLOT } from './replay.js';
 import { SOURCE_COLOURS } from './looks.js';
 
 /** @typedef {import('./replay.js').MapReplay} MapReplay */
 /** @typedef {import('./ground.js').DriveGround} DriveGround */
 /** @typedef {import('./looks.js').DriveTheme} DriveTheme */
-/** @typedef {import('./scale.js').MapScale} MapScale */
+/** @typedef {import('../data/limits.js').ColourScale} ColourScale */
 /** @typedef {import('./scale.js').MapColouring} MapColouring */
 /** @typedef {{left: number, bottom: number, right: number, top: number}} CellBox first and last i and j */
 
@@ -54,16 +55,14 @@ export class CellTruth {
 /** The colour of a cell, without shade. */
 export class CellPaint {
   /**
-   * @param {MapReplay} replay @param {MapColouring} colouring @param {MapScale|null} scale null for sources
+   * @param {MapReplay} replay @param {MapColouring} colouring @param {ColourScale|null} scale null for sources
    * @param {CellTruth|null} truth @param {DriveTheme} theme
    */
   constructor(replay, colouring, scale, truth, theme) {
     this.replay = replay;
     this.colouring = colouring;
     this.truth = truth;
-    this.table = colourTable(scale?.map ?? 'viridis');
-    this.low = scale?.low ?? 0;
-    this.factor = scale ? (MAP_COLOURS - 1) / (scale.high - scale.low) : 0;
+    this.ofValue = scale ? coloursOf(scale) : () => this.none;
     this.ofSource = SOURCE_COLOURS.map((name) => (name ? packedHex(theme[name]) : 0));
     this.none = packedHex(theme.soft);
   }
@@ -77,8 +76,7 @@ export class CellPaint {
     if (this.colouring === 'error') {
       value -= this.truth ? this.truth.heightOf(slot) : NaN;
     }
-    const place = Math.round((value - this.low) * this.factor);
-    return place === place ? this.table[Math.max(0, Math.min(MAP_COLOURS - 1, place))] : this.none;
+    return Number.isNaN(value) ? this.none : this.ofValue(value);
   }
 }
 

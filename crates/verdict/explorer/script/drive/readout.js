@@ -26,7 +26,7 @@ export class DriveReadout {
     this.cell = element('div', { 'data-drive-readout': 'cell' });
     this.sector = element('div', { 'data-drive-readout': 'sector' });
     this.element = element('div', { class: 'drive-readout' }, this.cell, this.sector);
-    state.onChange(() => this.show());
+    state.listen(() => this.show());
   }
 
   show() {

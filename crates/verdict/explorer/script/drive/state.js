@@ -1,5 +1,7 @@
 // What the drive panel shows: the frame, the chosen sector and cell, and how the map is drawn.
 
+import { Choices } from '../state.js';
+
 /** @typedef {import('./scale.js').MapColouring} MapColouring */
 /** @typedef {[number, number]} CellPlace i and j */
 /**
@@ -18,43 +20,14 @@
  * @property {boolean} isPlaying
  * @property {number} speed
  */
-/** @typedef {(changed: Set<keyof DriveChoice>) => void} DriveListener */
+/** @typedef {import('../state.js').Choices<DriveChoice>} DriveState */
 
-export class DriveState {
-  constructor() {
-    /** @type {DriveChoice} */
-    this.choice = {
-      frame: 0, sector: -1, hoverSector: -1, cell: null, hoverCell: null, colouring: 'elevation', isShaded: true,
-      hasRelief: true, hasSectors: true, mapFollows: false, viewFollows: false, isPlaying: false, speed: 1,
-    };
-    /** @type {DriveListener[]} */
-    this.listeners = [];
-  }
-
-  /** @param {DriveListener} listener */
-  onChange(listener) {
-    this.listeners.push(listener);
-  }
-
-  /** Sets parts of the choice, and tells the listeners what has changed. @param {Partial<DriveChoice>} part */
-  set(part) {
-    /** @type {Set<keyof DriveChoice>} */
-    const changed = new Set();
-    for (const key of /** @type {(keyof DriveChoice)[]} */ (Object.keys(part))) {
-      if (!isSame(this.choice[key], part[key])) {
-        changed.add(key);
-      }
-    }
-    Object.assign(this.choice, part);
-    if (changed.size > 0) {
-      for (const listener of this.listeners) {
-        listener(changed);
-      }
-    }
-  }
-}
-
-/** Whether two values are the same; cells are if their numbers are. @param {unknown} a @param {unknown} b */
-function isSame(a, b) {
-  return a === b || (Array.isArray(a) && Array.isArray(b) && a[0] === b[0] && a[1] === b[1]);
+/** What is shown before anything is chosen. @returns {DriveState} */
+export function plainDriveState() {
+  /** @type {DriveChoice} */
+  const choice = {
+    frame: 0, sector: -1, hoverSector: -1, cell: null, hoverCell: null, colouring: 'elevation', isShaded: true,
+    hasRelief: true, hasSectors: true, mapFollows: false, viewFollows: false, isPlaying: false, speed: 1,
+  };
+  return new Choices(choice);
 }

@@ -26,7 +26,7 @@ export class SectorTable {
     /** @type {HTMLTableRowElement[]} */
     this.rows = [];
     this.shown = -2;
-    state.onChange((changed) => {
+    state.listen((changed) => {
       if (changed.has('frame')) { this.fill(); }
       if (changed.has('sector') || changed.has('hoverSector')) { this.mark(changed.has('sector')); }
     });

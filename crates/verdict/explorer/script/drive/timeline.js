@@ -42,7 +42,7 @@ export class DriveTimeline {
     /** Place of playing, seconds of the drive. */
     this.place = 0;
     this.lastTick = 0;
-    state.onChange((changed) => {
+    state.listen((changed) => {
       if (changed.has('isPlaying')) { this.startOrStop(); }
       if (changed.has('frame')) { this.show(); }
     });

@@ -91,7 +91,7 @@ export class DriveView3d {
       centre: (x, y) => this.centre(x, y),
     });
     this.lastPlace = this.record.truePose(state.choice.frame).position;
-    state.onChange((changed) => this.changed(changed));
+    state.listen((changed) => this.changed(changed));
     new ResizeObserver(() => this.ask()).observe(this.elements.stage);
     new IntersectionObserver((entries) => {
       this.isSeen = entries.some((entry) => entry.isIntersecting);

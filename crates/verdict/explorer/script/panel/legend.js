@@ -7,6 +7,7 @@ import { CLASS_NAMES } from '../data/page_model.js';
 
 /** @typedef {import('../data/page_model.js').PageModel} PageModel */
 /** @typedef {import('./painter.js').Layer} Layer */
+/** @typedef {import('../data/limits.js').ColourScale} ColourScale */
 /** @typedef {import('./viewport.js').Viewport} Viewport */
 
 /** Width of a bar beside a picture whose width is not known, and the least of one that is: CSS pixels. */
@@ -23,28 +24,34 @@ export function fillLegend(legend, model, layers, view) {
     return;
   }
   if (layer.scale) {
-    // A picture that has no size yet gets one before anybody sees it.
     const width = view.width / view.ratio;
-    legend.append(colourBar(layer, width > LEAST_BAR ? width : USUAL_BAR));
+    const title = layer.of === 'difference'
+      ? `difference of ${layer.channel.title}${layer.unit === '°' ? ': angle' : ''}`
+      : layer.channel.title;
+    legend.append(colourBar(layer.scale, layer.unit, title, width));
   }
   const keys = element('div', { class: 'x-keys' });
   for (const [look, words] of keysOf(model, layer)) {
     keys.append(element('span', { class: 'x-key' }, look, words));
   }
   if (layer.scale?.isClipped) {
-    keys.append(element('span', { class: 'x-key' }, 'Values beyond the ends have the colours of the ends.'));
+    keys.append(element('span', { class: 'x-key' }, CLIPPED_WORDS));
   }
   keys.append(element('span', { class: 'x-key', 'data-stretch-words': true }));
   legend.append(keys);
 }
 
-/** @param {Layer} layer @param {number} width CSS pixels */
-function colourBar(layer, width) {
-  const { scale, unit } = layer;
+/** What is said of a scale that is clipped. */
+export const CLIPPED_WORDS = 'Values beyond the ends have the colours of the ends.';
+
+/**
+ * The colours of a scale, with ticks.
+ * @param {ColourScale} scale @param {string} unit @param {string} title
+ * @param {number} wide width of the picture, CSS pixels; one that has no size yet gets one before anybody sees it
+ */
+export function colourBar(scale, unit, title, wide) {
+  const width = wide > LEAST_BAR ? wide : USUAL_BAR;
   const bar = element('div', { class: 'x-bar' });
-  if (!scale) {
-    return bar;
-  }
   bar.append(element('div', { class: 'x-ramp', style: `background:${gradientOf(scale.map)}` }));
   let free = -Infinity;
   for (const tick of ticksOf(scale, unit, width < 420 ? 4 : 7)) {
@@ -63,10 +70,6 @@ function colourBar(layer, width) {
     signed: '',
     'signed-log': 'even steps of the logarithm on both sides of 0',
   }[scale.spread];
-  const title =
-    layer.of === 'difference'
-      ? `difference of ${layer.channel.title}${layer.unit === '°' ? ': angle' : ''}`
-      : layer.channel.title;
   bar.append(element('span', { class: 'x-bar-name' }, steps ? `${title}; ${steps}` : title));
   return bar;
 }

@@ -202,15 +202,28 @@ function signedUnitScale(settings) {
 }
 
 /**
+ * The packed colour of a finite value on a scale.
+ * @param {ColourScale} scale
+ * @returns {(value: number) => number}
+ */
+export function coloursOf(scale) {
+  const table = colourTable(scale.map);
+  const place = placeOn(scale);
+  const last = MAP_COLOURS - 1;
+  return (value) => {
+    const step = Math.round(place(value) * last);
+    return table[step < 0 ? 0 : step > last ? last : step];
+  };
+}
+
+/**
  * @param {ArrayLike<number>} values @param {ColourScale} scale @param {number} nothing
  * @param {boolean} [marksInfinite] whether Infinity is a hit on one side only; else it is no hit
  * @returns {Uint32Array<ArrayBuffer>}
  */
 function scaledPixels(values, scale, nothing, marksInfinite = true) {
   const pixels = new Uint32Array(values.length);
-  const table = colourTable(scale.map);
-  const place = placeOn(scale);
-  const last = MAP_COLOURS - 1;
+  const colourOf = coloursOf(scale);
   const [oneSided, tooNear] = [ONE_SIDED_COLOUR, TOO_NEAR_COLOUR].map(packedHex);
   for (let cell = 0; cell < pixels.length; cell += 1) {
     const value = values[cell];
@@ -218,8 +231,7 @@ function scaledPixels(values, scale, nothing, marksInfinite = true) {
       pixels[cell] = value === -Infinity ? tooNear : marksInfinite && value === Infinity ? oneSided : 0;
       continue;
     }
-    const step = Math.round(place(value) * last);
-    pixels[cell] = table[step < 0 ? 0 : step > last ? last : step];
+    pixels[cell] = colourOf(value);
   }
   return pixels;
 }

@@ -5,7 +5,8 @@ import { Viewport } from './viewport.js';
 import { drawMarks, drawSelection, marksOf } from './marks.js';
 import { drawAxes, drawGrid, drawNumbers } from './drawing.js';
 import { drawLayers } from './layers.js';
-import { PointerHand } from './pointer.js';
+import { PictureHand } from './hand.js';
+import { pictureDivider } from './divider.js';
 import { fillLegend } from './legend.js';
 import { channelOf, channelsOfSensor, isNamed } from '../data/channels.js';
 
@@ -61,15 +62,7 @@ export class SensorPanel {
       'aria-label': `${name}: not drawn yet`,
       'data-panel': name,
     });
-    this.divider = element('div', {
-      class: 'x-divider',
-      role: 'slider',
-      tabindex: '0',
-      'aria-label': `${name}: line between A and B`,
-      'aria-valuemin': '0',
-      'aria-valuemax': '100',
-      hidden: true,
-    });
+    this.divider = pictureDivider(name, state, (event) => this.place(event)[0] / this.view.width);
     this.stage = element('div', { class: 'x-stage' }, this.canvas, this.divider, this.message);
     this.legend = element('div', { class: 'x-legend' });
     this.root = element(
@@ -79,7 +72,17 @@ export class SensorPanel {
       this.stage,
       this.legend,
     );
-    this.hand = new PointerHand(this);
+    const changed = () => {
+      this.host.viewChanged(this);
+      this.draw();
+    };
+    new PictureHand(this.canvas, this.view, {
+      place: (event) => this.place(event),
+      pointed: (x, y, isHover) => this.pointed(x, y, isHover),
+      left: () => this.host.left(),
+      panned: changed,
+      zoomed: changed,
+    });
     this.watch();
   }
 
@@ -117,6 +120,30 @@ export class SensorPanel {
       width: this.view.width,
       height: this.view.height,
     };
+  }
+
+  /**
+   * The place of a pointer within the area, pixels of the device.
+   * @param {{clientX: number, clientY: number}} event
+   * @returns {[number, number]}
+   */
+  place(event) {
+    const box = this.canvas.getBoundingClientRect();
+    const { area, view } = this;
+    return [
+      (event.clientX - box.left) * view.ratio - area.x,
+      (event.clientY - box.top) * view.ratio - area.y,
+    ];
+  }
+
+  /** @param {number} x @param {number} y pixels of the device within the area @param {boolean} isHover */
+  pointed(x, y, isHover) {
+    const { view } = this;
+    const isInside = x >= 0 && y >= 0 && x < view.width && y < view.height;
+    const cell = isInside ? view.cellAt(x, y) : -1;
+    if (isHover || cell >= 0) {
+      this.host.pointed(this.sensorIndex, cell, isHover);
+    }
   }
 
   resize() {
