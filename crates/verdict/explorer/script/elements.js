@@ -80,6 +80,17 @@ export function menu(label, entries, value, action) {
 }
 
 /**
+ * A table of values with names above all columns but the first, and what rows are called in the first.
+ * @param {string[]} heads
+ * @param {HTMLElement[]} rows
+ */
+export function valueTable(heads, rows) {
+  const names = heads.map((head) => element('th', { scope: 'col' }, head));
+  const head = element('thead', {}, element('tr', {}, element('td'), ...names));
+  return element('table', { class: 'x-values' }, head, element('tbody', {}, ...rows));
+}
+
+/**
  * Copies text. Pages that are opened from a file may have no clipboard; then a text field does it.
  * @param {string} text
  * @returns {Promise<boolean>} whether it was copied

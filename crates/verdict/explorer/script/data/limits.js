@@ -1,6 +1,6 @@
 // Limits of a colour scale: of all values, or robust against a few outliers; and round numbers as ticks.
 
-import { withUnit } from './numbers.js';
+import { roundAbove, withUnit } from './numbers.js';
 
 /**
  * @typedef {object} ValueStatistics
@@ -226,9 +226,7 @@ export function ticksOf(scale, unit, most) {
 
 /** @param {number} low @param {number} high @param {number} most */
 function roundSteps(low, high, most) {
-  const rough = (high - low) / Math.max(1, most - 1);
-  const decade = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map((factor) => factor * decade).find((size) => size >= rough * 0.999) ?? rough;
+  const step = roundAbove((0.999 * (high - low)) / Math.max(1, most - 1));
   const first = Math.ceil(low / step - 1e-9);
   const last = Math.floor(high / step + 1e-9);
   const values = [];

@@ -182,3 +182,9 @@ export function cellWords(value, room) {
   const mantissa = room - sign >= 7 ? 1 : 0;
   return value.toExponential(mantissa).replace('e+', 'e').replace(/^-/, '−');
 }
+
+/** The least of 1, 2 and 5 times a power of ten that is not below a number. @param {number} size above 0 */
+export function roundAbove(size) {
+  const decade = 10 ** Math.floor(Math.log10(size));
+  return [1, 2, 5, 10].map((factor) => factor * decade).find((step) => step >= size) ?? 10 * decade;
+}

@@ -137,20 +137,33 @@ export class PageData {
     if ('stored' in entry) {
       return /** @type {Raster} */ (await this.container.decode(entry.stored));
     }
+    const parts = await this.derivedParts(sensorIndex, sideIndex, entry.derived);
+    if (!parts) {
+      return null;
+    }
+    const { sensor, planes, faces, cells, bits } = parts;
+    const known = await this.knownSide(sensorIndex, sideIndex, channel);
+    const values = derivedRaster(sensor, planes, faces, channel, known);
+    putRecordedBits(values, cells, bits);
+    return values;
+  }
+
+  /**
+   * From what a derived channel is computed; null without faces.
+   * @param {number} sensorIndex @param {number} sideIndex
+   * @param {{cells: import('./container.js').ArrayReference, bits: import('./container.js').ArrayReference}} derived
+   */
+  async derivedParts(sensorIndex, sideIndex, derived) {
     const [planes, faces, cells, bits] = await Promise.all([
       this.planes(),
       this.raster(sensorIndex, sideIndex, 'face.I'),
-      this.container.decode(entry.derived.cells),
-      this.container.decode(entry.derived.bits),
+      this.container.decode(derived.cells),
+      this.container.decode(derived.bits),
     ]);
-    if (!planes || !faces) {
-      return null;
-    }
-    const sensor = this.model.sensors[sensorIndex];
-    const known = await this.knownSide(sensorIndex, sideIndex, channel);
-    const values = derivedRaster(sensor, planes, /** @type {Uint32Array} */ (faces), channel, known);
-    putRecordedBits(values, /** @type {Uint32Array} */ (cells), /** @type {Uint32Array} */ (bits));
-    return values;
+    const words = (/** @type {unknown} */ array) => /** @type {Uint32Array} */ (array);
+    return planes && faces
+      ? { sensor: this.model.sensors[sensorIndex], planes, faces: words(faces), cells: words(cells), bits: words(bits) }
+      : null;
   }
 
   /**
@@ -219,17 +232,12 @@ export class PageData {
       const raster = known ?? (await this.raster(sensorIndex, sideIndex, channel));
       return (cell) => raster?.[cell] ?? NaN;
     }
-    const [planes, faces, cells, bits] = await Promise.all([
-      this.planes(),
-      this.raster(sensorIndex, sideIndex, 'face.I'),
-      this.container.decode(entry.derived.cells),
-      this.container.decode(entry.derived.bits),
-    ]);
-    if (!planes || !faces) {
+    const parts = await this.derivedParts(sensorIndex, sideIndex, entry.derived);
+    if (!parts) {
       return () => missingValue(channel);
     }
-    const sensor = this.model.sensors[sensorIndex];
-    const derive = derivedReader(sensor, planes, /** @type {Uint32Array} */ (faces), channel);
+    const { sensor, planes, faces, cells, bits } = parts;
+    const derive = derivedReader(sensor, planes, faces, channel);
     const recorded = new Float32Array(bits.buffer, bits.byteOffset, bits.length);
     return (cell) => {
       const fixed = cells.length === 0 ? -1 : placeOfCell(cells, cell);

@@ -1,6 +1,6 @@
 // Solid coloured faces that change from frame to frame: the cells of the map, and the vehicle. Drawn by WebGL2.
 
-import { DepthProgram, GL_LOG_DEPTH } from '../gl/program.js';
+import { DepthProgram, GL_WRITE_DEPTH } from '../gl/program.js';
 import { GlVertices } from '../gl/vertices.js';
 
 /** @typedef {import('../view3d/camera.js').ViewCamera} ViewCamera */
@@ -30,11 +30,8 @@ flat in vec3 faceColour;
 in vec3 fromEye;
 in float depth;
 uniform float ambient;
-uniform float logPull;
 out vec4 result;
-#ifdef LOG_DEPTH
-${GL_LOG_DEPTH}
-#endif
+${GL_WRITE_DEPTH}
 void main() {
   // The face's normal, turned towards the eye.
   vec3 n = cross(dFdx(fromEye), dFdy(fromEye));
@@ -43,9 +40,7 @@ void main() {
   float sun = max(dot(n, vec3(-0.396, 0.594, 0.700)), 0.0);
   float head = max(dot(n, normalize(-fromEye)), 0.0);
   result = vec4(faceColour * (ambient + (1.0 - ambient) * (0.75 * sun + 0.35 * head)), 1.0);
-#ifdef LOG_DEPTH
-  gl_FragDepth = clamp(logDepthOf(depth) - logPull, 0.0, 1.0);
-#endif
+  writeDepth(depth);
 }
 `;
 

@@ -3,7 +3,7 @@
 // A close-up may show micrometres of a line of many metres. So each line is clipped to what is seen before
 // its numbers are rounded to single precision.
 
-import { DepthProgram, GL_LOG_DEPTH } from './program.js';
+import { DepthProgram, GL_WRITE_DEPTH } from './program.js';
 
 /** @typedef {import('../view3d/vector.js').Point3} Point3 */
 /** @typedef {import('../view3d/camera.js').ViewCamera} ViewCamera */
@@ -37,17 +37,12 @@ in vec2 across;
 in vec4 paint;
 in float inverseDepth;
 uniform float strength;
-uniform float logPull;
 out vec4 result;
-#ifdef LOG_DEPTH
-${GL_LOG_DEPTH}
-#endif
+${GL_WRITE_DEPTH}
 void main() {
   float cover = clamp(across.y - abs(across.x) + 0.5, 0.0, 1.0);
   result = vec4(paint.rgb, paint.a * cover * strength);
-#ifdef LOG_DEPTH
-  gl_FragDepth = clamp(logDepthOf(1.0 / inverseDepth) - logPull, 0.0, 1.0);
-#endif
+  writeDepth(1.0 / inverseDepth);
 }
 `;
 

@@ -1,6 +1,6 @@
 // The drawing of the terrain by WebGL2: one indexed draw, flat faces, a grid of metres laid over the ground.
 
-import { DepthProgram, GL_LOG_DEPTH } from './program.js';
+import { DepthProgram, GL_WRITE_DEPTH } from './program.js';
 import { GlVertices } from './vertices.js';
 import { orderForDrawing } from '../view3d/terrain.js';
 
@@ -84,10 +84,7 @@ uniform vec3 gridColour;
 uniform vec3 backColour;
 uniform float pixelRatio;
 out vec4 result;
-#ifdef LOG_DEPTH
-${GL_LOG_DEPTH}
-#endif
-
+${GL_WRITE_DEPTH}
 #ifdef PLACE
 // Share of the pixel that lies on lines at whole numbers.
 float lineAt(float place, float width, float weight) {
@@ -120,9 +117,7 @@ void main() {
   }
 #endif
   result = vec4(base, 1.0);
-#ifdef LOG_DEPTH
-  gl_FragDepth = logDepthOf(1.0 / gl_FragCoord.w);
-#endif
+  writeDepth(1.0 / gl_FragCoord.w);
 }
 `;
 

@@ -1,6 +1,6 @@
 // Points of a cloud, each with its colour. Drawn by WebGL2.
 
-import { DepthProgram, GL_LOG_DEPTH } from './program.js';
+import { DepthProgram, GL_WRITE_DEPTH } from './program.js';
 import { GlVertices } from './vertices.js';
 
 /** @typedef {import('../view3d/camera.js').ViewCamera} ViewCamera */
@@ -27,16 +27,11 @@ void main() {
 const POINTS_FRAGMENT = `
 flat in vec3 pointColour;
 in float depth;
-uniform float logPull;
 out vec4 result;
-#ifdef LOG_DEPTH
-${GL_LOG_DEPTH}
-#endif
+${GL_WRITE_DEPTH}
 void main() {
   result = vec4(pointColour, 1.0);
-#ifdef LOG_DEPTH
-  gl_FragDepth = clamp(logDepthOf(depth) - logPull, 0.0, 1.0);
-#endif
+  writeDepth(depth);
 }
 `;
 

@@ -3,9 +3,17 @@
 /** @typedef {import('../view3d/camera.js').ViewCamera} ViewCamera */
 
 /** The part of a fragment shader that writes logarithmic depths, for scenes of very unlike depths. */
-export const GL_LOG_DEPTH = `
+export const GL_WRITE_DEPTH = `
+#ifdef LOG_DEPTH
 uniform vec2 logDepth; // 1 / near, 1 / log2(far / near)
-float logDepthOf(float depth) { return clamp(log2(max(depth * logDepth.x, 1e-30)) * logDepth.y, 0.0, 1.0); }
+uniform float logPull; // towards the eye
+void writeDepth(float depth) {
+  float share = clamp(log2(max(depth * logDepth.x, 1e-30)) * logDepth.y, 0.0, 1.0);
+  gl_FragDepth = clamp(share - logPull, 0.0, 1.0);
+}
+#else
+void writeDepth(float depth) {}
+#endif
 `;
 
 /**

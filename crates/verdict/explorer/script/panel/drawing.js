@@ -1,6 +1,6 @@
 // What is drawn over a picture: axes in cells, the grid, and the numbers in large cells.
 
-import { cellWords } from '../data/numbers.js';
+import { cellWords, roundAbove } from '../data/numbers.js';
 import { inkOn } from './colour.js';
 import { axisWords } from './axis_words.js';
 
@@ -165,8 +165,8 @@ function ticksAlong(axis, first, end, scale, room) {
     return cellTicks(first, end, scale, room, (cell) => axisWords(axis, at[cell]));
   }
   const rough = (room / scale) * each;
-  const round = axis.turns ? TURN_STEPS.find((size) => size >= rough) : undefined;
-  const step = rough < 1 ? roundBelowOne(rough) : (round ?? tickStep(1, rough));
+  const round = axis.turns && rough >= 1 ? TURN_STEPS.find((size) => size >= rough) : undefined;
+  const step = round ?? roundAbove(rough);
   const ticks = [];
   for (let cell = first; cell < Math.min(end, count - 1); cell += 1) {
     const [from, to] = [at[cell], at[cell + 1]];
@@ -179,18 +179,7 @@ function ticksAlong(axis, first, end, scale, room) {
   return ticks;
 }
 
-/** 1, 2 or 5 times a power of ten, at least so large. @param {number} size below 1 */
-function roundBelowOne(size) {
-  const decade = 10 ** Math.floor(Math.log10(size));
-  return [1, 2, 5, 10].map((factor) => factor * decade).find((step) => step >= size) ?? 1;
-}
-
 /** Cells between ticks: 1, 2 or 5 times a power of ten. @param {number} scale @param {number} room pixels */
 function tickStep(scale, room) {
-  const rough = room / scale;
-  if (rough <= 1) {
-    return 1;
-  }
-  const decade = 10 ** Math.floor(Math.log10(rough));
-  return [1, 2, 5, 10].map((factor) => factor * decade).find((step) => step >= rough) ?? 10 * decade;
+  return roundAbove(Math.max(1, room / scale));
 }

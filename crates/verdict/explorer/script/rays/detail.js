@@ -4,7 +4,7 @@
 // `[data-detail-command]`, `[data-detail-probe]` (absent if the ray is not described), rows
 // `[data-detail-channel="range.T"]`, and the buttons `[data-show-3d]` and `[data-copy-command]`.
 
-import { button, copyText, element } from '../elements.js';
+import { button, copyText, element, valueTable } from '../elements.js';
 import { causeMark, classMark } from '../panel/legend.js';
 import { NOTHING, NO_CODE, placeWords, probeCommand } from '../data/page_model.js';
 import { plain, signedWithUnit, withUnit } from '../data/numbers.js';
@@ -116,21 +116,7 @@ export class RayDetail {
         element('p', { class: 'x-soft' }, element('code', { 'data-detail-command': true }, command)),
       );
     }
-    const table = element(
-      'table',
-      { class: 'x-values' },
-      element(
-        'thead',
-        {},
-        element(
-          'tr',
-          {},
-          element('td'),
-          ...[`A ${names[0]}`, `B ${names[1]}`, 'B − A'].map((name) => element('th', { scope: 'col' }, name)),
-        ),
-      ),
-      element('tbody', {}, ...rows),
-    );
+    const table = valueTable([`A ${names[0]}`, `B ${names[1]}`, 'B − A'], rows);
     parts.push(
       element(
         'details',

@@ -12,7 +12,7 @@
 // `[data-readout-root]` has `data-channel`, `data-cell`, `data-state` ("empty", "busy", "ready", "failed").
 // `[data-goto]` is the field for a cell.
 
-import { element } from '../elements.js';
+import { element, valueTable } from '../elements.js';
 import { causeMark, classMark } from '../panel/legend.js';
 import { cellWords, plain, signedWithUnit, withUnit } from '../data/numbers.js';
 import { NOTHING, CLASS_NAMES, NO_CODE } from '../data/page_model.js';
@@ -132,32 +132,16 @@ export class Readout {
     const shown = shownChannel(channel);
     const { a, b } = this.state.choice;
     const names = [a, b].map((side) => model.sides[side]?.name ?? '?');
-    const table = element(
-      'table',
-      { class: 'x-values' },
-      element(
-        'thead',
-        {},
-        element(
-          'tr',
-          {},
-          element('td'),
-          element('th', { scope: 'col' }, `A ${names[0]}`),
-          element('th', { scope: 'col' }, `B ${names[1]}`),
-        ),
-      ),
-    );
-    const rows = element('tbody');
-    rows.append(
+    const rows = [
       valueRow(shown.title, [
         valueCell('a', reading.a, reading.hasA, shown),
         valueCell('b', reading.b, reading.hasB, shown),
       ]),
-    );
+    ];
     if (shown.key !== 'face.I') {
-      rows.append(valueRow('face', [faceCell('face-a', reading.faceA), faceCell('face-b', reading.faceB)]));
+      rows.push(valueRow('face', [faceCell('face-a', reading.faceA), faceCell('face-b', reading.faceB)]));
     }
-    table.append(rows);
+    const table = valueTable([`A ${names[0]}`, `B ${names[1]}`], rows);
     const lines = element('dl', { class: 'x-lines' });
     const { axes } = sensor;
     const ofAxes = axes
