@@ -5,6 +5,16 @@ use std::fmt;
 
 use raypencil_scene::{FluxModel, HitQuantity, SensorId};
 
+/// The quantities of a pencil's return.
+pub(crate) const RETURN_QUANTITIES: [Quantity; 6] = [
+    Quantity::Visible,
+    Quantity::Pixel,
+    Quantity::CameraDepth,
+    Quantity::CosOffAxis,
+    Quantity::CosView,
+    Quantity::PencilFlux,
+];
+
 /// What is judged of each ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

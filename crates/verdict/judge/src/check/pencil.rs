@@ -13,7 +13,7 @@ use crate::check::stored::stored_difference;
 use crate::class::Class;
 use crate::difference::{Difference, StatedValue, return_values};
 use crate::entry::RayEntry;
-use crate::quantity::{Item, Quantity};
+use crate::quantity::{Item, Quantity, RETURN_QUANTITIES};
 use crate::recorded::Recorded;
 use crate::scene_answers::BeamLight;
 use raypencil_referee::{Format, RoundedReturn};
@@ -393,15 +393,7 @@ fn judge_no_return(entry: &mut RayEntry<'_>, recorded: &Recorded, stated: &State
 
 /// Enters the values of which the recording has no channel.
 fn missing_values(entry: &mut RayEntry<'_>, recorded: &Recorded) {
-    let quantities = [
-        Quantity::Visible,
-        Quantity::Pixel,
-        Quantity::CameraDepth,
-        Quantity::CosOffAxis,
-        Quantity::CosView,
-        Quantity::PencilFlux,
-    ];
-    for item in quantities.map(Item::from).into_iter().chain([Item::pencil_flux(true)]) {
+    for item in RETURN_QUANTITIES.map(Item::from).into_iter().chain([Item::pencil_flux(true)]) {
         if !recorded.storage.contains_key(&(entry.place.sensor, item)) {
             entry.missing(item);
         }

@@ -9,18 +9,8 @@ use crate::compare::side::Side;
 use crate::difference::{Difference, StatedValue, return_values};
 use crate::entry::RayEntry;
 use crate::judge::Judge;
-use crate::quantity::{Item, Quantity};
+use crate::quantity::{Item, Quantity, RETURN_QUANTITIES};
 use raypencil_scene::{FaceId, Place, Precision, Returns, SensorId};
-
-/// The quantities of a pencil's return.
-const RETURN_QUANTITIES: [Quantity; 6] = [
-    Quantity::Visible,
-    Quantity::Pixel,
-    Quantity::CameraDepth,
-    Quantity::CosOffAxis,
-    Quantity::CosView,
-    Quantity::PencilFlux,
-];
 
 /// Compares the return of one pencil, whose hit is compared already.
 pub(super) fn compare_return(
