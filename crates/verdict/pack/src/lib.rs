@@ -64,8 +64,8 @@ pub use bench::{BENCH_BEAMS, BITING_BEAMS, with_bench};
 pub use blind::{blind_scene, blind_subject};
 pub use check::{CheckError, Checked, Verified, check_pack, check_pack_by};
 pub use check_report::{
-    BundleFindings, CheckFindings, ItemFindings, PackForm, WorstOf, WrongRay, check_suite, items_not_given,
-    not_given, rays_not_given, write_document,
+    BundleFindings, CheckFindings, ItemFindings, PackForm, Said, WorstOf, WrongRay, check_suite,
+    items_not_given, not_given, rays_not_given, write_document,
 };
 pub use clauses::{ClauseRays, MIN_RAYS_PER_CLAUSE, can_count_clauses, clause_rays};
 pub use declarations::Declarations;

@@ -1,10 +1,12 @@
 //! A check of a pack of rays in the form of every check.
 
 use raypencil_judge::Class;
-use raypencil_pack::{BundleFindings, CheckFindings, ItemFindings, PackForm, PackLabel, WorstOf, WrongRay};
+use raypencil_pack::{
+    BundleFindings, CheckFindings, ItemFindings, PackForm, PackLabel, Said, WorstOf, WrongRay,
+};
 use raypencil_report::{DefectLine, Document, count, counted};
 use raypencil_scene::{FaceId, Reading};
-use serde_json::{Map, Value, json};
+use serde_json::Map;
 
 use super::check::RayPackChecked;
 use crate::comparison::{RayVerdict, Wrong, wrong_text};
@@ -262,68 +264,36 @@ impl RayPackChecked {
         (place, words): (String, &str),
         command: String,
     ) -> WrongRay {
-        WrongRay {
-            key: key.into(),
-            data: json!({
-                "bundle": bundle,
-                "ray": [index],
-                "quantity": key,
-                "said": [{ "who": self.name, "value": place }],
-                "true": Value::Null,
-                "difference": Value::Null,
-                "difference_unit": "",
-                "ratio": Value::Null,
-                "margin": Value::Null,
-                "what": words,
-                "command": command,
-            }),
-            line: DefectLine {
-                place,
-                quantity: quantity.into(),
-                words: words.into(),
-                command,
-                ..DefectLine::default()
-            },
-        }
+        let said = Said { who: &self.name, value: place.clone(), what: words, ..Said::default() };
+        let line = DefectLine {
+            place,
+            quantity: quantity.into(),
+            words: words.into(),
+            command,
+            ..DefectLine::default()
+        };
+        WrongRay::of_list(bundle, index, key, &said, line)
     }
 
     /// A wrong ray, for people and for programs.
     fn wrong_ray(&self, bundle: &str, index: usize, wrong: &Wrong) -> WrongRay {
-        let key = match wrong {
-            Wrong::Value { value, .. } => value.name(),
-            _ => HIT,
-        };
-        let command = self.ray_command(index);
         let words = wrong_text(wrong);
-        let (said, exact) = said_and_true(wrong);
-        let (difference, ratio) = match wrong {
-            Wrong::Value { error, bound, .. } => (Some(*error), Some(error / bound)),
-            _ => (None, None),
+        let (value, exact) = said_and_true(wrong);
+        let (key, quantity, difference, ratio) = match wrong {
+            Wrong::Value { value, error, bound } => {
+                (value.name(), value.name(), Some(*error), Some(error / bound))
+            }
+            _ => (HIT, "first hit", None, None),
         };
-        let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
-        WrongRay {
-            key: key.into(),
-            data: json!({
-                "bundle": bundle,
-                "ray": [index],
-                "quantity": key,
-                "said": [{ "who": self.name, "value": said }],
-                "true": exact,
-                "difference": finite(difference),
-                "difference_unit": "",
-                "ratio": finite(ratio),
-                "margin": Value::Null,
-                "what": words,
-                "command": command,
-            }),
-            line: DefectLine {
-                place: format!("{bundle} {index}"),
-                quantity: if key == HIT { "first hit".into() } else { key.into() },
-                words,
-                command,
-                ..DefectLine::default()
-            },
-        }
+        let said = Said { who: &self.name, value, exact, difference, ratio, what: &words };
+        let line = DefectLine {
+            place: format!("{bundle} {index}"),
+            quantity: quantity.into(),
+            words: words.clone(),
+            command: self.ray_command(index),
+            ..DefectLine::default()
+        };
+        WrongRay::of_list(bundle, index, key, &said, line)
     }
 }
 

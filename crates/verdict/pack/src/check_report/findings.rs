@@ -123,6 +123,44 @@ pub struct WrongRay {
     pub data: Value,
 }
 
+/// What was said of one element of a list, and what is true of it.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Said<'a> {
+    /// Who said it.
+    pub who: &'a str,
+    /// What was said.
+    pub value: String,
+    /// What is true, where one value is.
+    pub exact: Option<String>,
+    /// How far off it is.
+    pub difference: Option<f64>,
+    /// The same, in units of what is allowed.
+    pub ratio: Option<f64>,
+    /// What is wrong, in words.
+    pub what: &'a str,
+}
+
+impl WrongRay {
+    /// Number `index` of the bundle `bundle`, which is one list: rays of no sensor, or triangles.
+    pub fn of_list(bundle: &str, index: usize, key: &str, said: &Said<'_>, line: DefectLine) -> Self {
+        let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
+        let data = json!({
+            "bundle": bundle,
+            "ray": [index],
+            "quantity": key,
+            "said": [{ "who": said.who, "value": said.value }],
+            "true": said.exact,
+            "difference": finite(said.difference),
+            "difference_unit": "",
+            "ratio": finite(said.ratio),
+            "margin": Value::Null,
+            "what": said.what,
+            "command": line.command,
+        });
+        Self { key: key.into(), line, data }
+    }
+}
+
 /// What became of one bundle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BundleFindings {

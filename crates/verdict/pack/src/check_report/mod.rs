@@ -18,7 +18,7 @@ mod given;
 mod sensors;
 mod sharpness;
 
-pub use findings::{BundleFindings, CheckFindings, ItemFindings, PackForm, WorstOf, WrongRay};
+pub use findings::{BundleFindings, CheckFindings, ItemFindings, PackForm, Said, WorstOf, WrongRay};
 pub use folder::write_document;
 pub use given::{items_not_given, not_given, rays_not_given};
 pub use sensors::check_suite;

@@ -2,9 +2,9 @@
 
 use raypencil_judge::Class;
 use raypencil_report::{DefectLine, Document, counted};
-use serde_json::{Value, json};
+use serde_json::json;
 
-use crate::check_report::{BundleFindings, CheckFindings, ItemFindings, PackForm, WrongRay};
+use crate::check_report::{BundleFindings, CheckFindings, ItemFindings, PackForm, Said, WrongRay};
 use crate::input::check::{InputChecked, WrongFace};
 use crate::input::clause::LoadingClause;
 use crate::published::PackLabel;
@@ -100,29 +100,16 @@ fn wrong_face(wrong: &WrongFace) -> WrongRay {
         (Some(_), Some(said)) => (format!("the reflectivity {said}"), truth.reflectivity.to_string()),
         (Some(said), None) => (format!("{said:?}"), format!("{:?}", truth.corners)),
     };
-    WrongRay {
-        key: truth.clause.key().into(),
-        line: DefectLine {
-            place: format!("face {face}"),
-            quantity: truth.clause.key().into(),
-            words: format!("is given as {said}; true is {exact}"),
-            what: truth.clause.sentence().into(),
-            ..DefectLine::default()
-        },
-        data: json!({
-            "bundle": "triangles",
-            "ray": [face],
-            "quantity": truth.clause.key(),
-            "said": [{ "who": "given", "value": said }],
-            "true": exact,
-            "difference": Value::Null,
-            "difference_unit": "",
-            "ratio": Value::Null,
-            "margin": Value::Null,
-            "what": truth.clause.sentence(),
-            "command": "",
-        }),
-    }
+    let (key, what) = (truth.clause.key(), truth.clause.sentence());
+    let line = DefectLine {
+        place: format!("face {face}"),
+        quantity: key.into(),
+        words: format!("is given as {said}; true is {exact}"),
+        what: what.into(),
+        ..DefectLine::default()
+    };
+    let said = Said { who: "given", value: said, exact: Some(exact), what, ..Said::default() };
+    WrongRay::of_list("triangles", *face, key, &said, line)
 }
 
 /// The verdict in one sentence.
