@@ -4,11 +4,11 @@ use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use raypencil::cast::{
-    Answers, CastSeen, Caster, FirstColumns, GroupAtT, Questions, ReadingCounts, Values, cast_beside_first,
-    cast_warnings_of, traced_beside_first,
+    AllColumns, Answers, CastSeen, Caster, FirstColumns, GroupAtT, Questions, ReadingCounts, Values,
+    cast_beside_first, cast_warnings_of, traced_beside_first,
 };
 use raypencil::referee::Margin;
-use raypencil::{CastRay, Progress, Side, Sides, Silent};
+use raypencil::{CastRay, Progress, Sides, Silent};
 
 use crate::array::Arrays;
 use crate::failure::Failure;
@@ -216,13 +216,6 @@ fn warnings(mesh: &MeshCore, rays: &[CastRay], asked: Asked, counts: ReadingCoun
     found.iter().map(ToString::to_string).collect()
 }
 
-fn side_number(side: Side) -> i8 {
-    match side {
-        Side::Front => 1,
-        Side::Back => -1,
-    }
-}
-
 /// The arrays of some answers. Names and values are those of the command's files.
 fn arrays_of(answered: Answered, rays: &[CastRay], shape: &[usize], by_tracer: bool) -> Arrays {
     let Answered { columns, beside: Answers { any, all, margins, .. }, .. } = answered;
@@ -258,28 +251,14 @@ fn arrays_of(answered: Answered, rays: &[CastRay], shape: &[usize], by_tracer: b
 
 /// All hits of all rays, one after the other.
 fn add_all(arrays: &mut Arrays, all: &[Vec<GroupAtT>], with_crossings: bool) {
-    let mut start = vec![0_u64];
-    let (mut faces, mut sides, mut t) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut of_groups, mut crossings) = (Vec::new(), Vec::new());
-    for groups in all {
-        for (index, group) in groups.iter().enumerate() {
-            for met in &group.faces {
-                faces.push(met.face.0);
-                sides.push(side_number(met.side));
-                t.push(group.t);
-                of_groups.push(index as u32);
-                crossings.push(group.crossing);
-            }
-        }
-        start.push(faces.len() as u64);
-    }
-    let count = [faces.len()];
+    let AllColumns { start, face, side, t, group, crossing } = AllColumns::of(all);
+    let count = [face.len()];
     arrays.add("all.start", &[start.len()], start);
-    arrays.add("all.face", &count, faces);
-    arrays.add("all.side", &count, sides);
+    arrays.add("all.face", &count, face);
+    arrays.add("all.side", &count, side);
     arrays.add("all.t", &count, t);
-    arrays.add("all.group", &count, of_groups);
+    arrays.add("all.group", &count, group);
     if with_crossings {
-        arrays.add("all.crossing", &count, crossings);
+        arrays.add("all.crossing", &count, crossing);
     }
 }

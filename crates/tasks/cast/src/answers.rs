@@ -61,6 +61,43 @@ pub struct GroupAtT {
     pub crossing: i32,
 }
 
+/// All hits of all rays, one after the other: the arrays `all.*` of files.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct AllColumns {
+    /// Where the hits of each ray begin, and one past the last of all.
+    pub start: Vec<u64>,
+    /// Index of the face of each hit.
+    pub face: Vec<u32>,
+    /// 1 front, -1 back.
+    pub side: Vec<i8>,
+    /// The ray's parameter.
+    pub t: Vec<f64>,
+    /// Which group of its ray the hit belongs to. Hits at exactly one t are a group.
+    pub group: Vec<u32>,
+    /// How often the surface is crossed at the group to its inside, less how often to its outside.
+    pub crossing: Vec<i32>,
+}
+
+impl AllColumns {
+    /// The groups of each ray, laid one after the other.
+    pub fn of(all: &[Vec<GroupAtT>]) -> Self {
+        let mut columns = Self { start: vec![0], ..Self::default() };
+        for groups in all {
+            for (index, group) in groups.iter().enumerate() {
+                for met in &group.faces {
+                    columns.face.push(met.face.0);
+                    columns.side.push(side_number(met.side));
+                    columns.t.push(group.t);
+                    columns.group.push(index as u32);
+                    columns.crossing.push(group.crossing);
+                }
+            }
+            columns.start.push(columns.face.len() as u64);
+        }
+        columns
+    }
+}
+
 /// Of how many rays each arithmetic decided the first hit.
 ///
 /// Signs are told in plain `f64` with a proven bound where that is certain, else in intervals of `f64`, else exactly. A ray counts

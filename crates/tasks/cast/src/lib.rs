@@ -54,7 +54,7 @@ mod warnings;
 mod write;
 
 pub use answers::{
-    Answers, DecidedCounts, FirstHit, GroupAtT, Questions, cast, cast_beside_first, cast_with,
+    AllColumns, Answers, DecidedCounts, FirstHit, GroupAtT, Questions, cast, cast_beside_first, cast_with,
     traced_beside_first,
 };
 pub use bag::{BagFields, BagForm, write_scan_bag};

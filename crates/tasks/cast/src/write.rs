@@ -11,7 +11,7 @@ use raypencil_report::VERSION;
 use raypencil_scene::{CastRay, NamedRaySet, Sides, Triangles};
 use serde_json::{Value, json};
 
-use crate::answers::{Answers, FirstHit, GroupAtT, side_number};
+use crate::answers::{AllColumns, Answers, FirstHit, GroupAtT, side_number};
 use crate::cloud::{CloudFrame, CloudMap, write_pcd, write_ply};
 use crate::range_picture::{range_picture, top_picture};
 use crate::returns::{BeamReturn, BeamReturns};
@@ -204,28 +204,14 @@ fn write_arrays(
 
 /// All hits of all rays, one after the other.
 fn write_all(folder: &mut ArrayFolder<'_>, all: &[Vec<GroupAtT>]) -> Result<(), FileError> {
-    let mut start = vec![0_u64];
-    let (mut faces, mut sides, mut t) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut of_groups, mut crossings) = (Vec::new(), Vec::new());
-    for groups in all {
-        for (index, group) in groups.iter().enumerate() {
-            for met in &group.faces {
-                faces.push(met.face.0);
-                sides.push(side_number(met.side));
-                t.push(group.t);
-                of_groups.push(index as u32);
-                crossings.push(group.crossing);
-            }
-        }
-        start.push(faces.len() as u64);
-    }
-    let count = [faces.len() as u64];
+    let AllColumns { start, face, side, t, group, crossing } = AllColumns::of(all);
+    let count = [face.len() as u64];
     folder.write("all.start", &[start.len() as u64], &start)?;
-    folder.write("all.face", &count, &faces)?;
-    folder.write("all.side", &count, &sides)?;
+    folder.write("all.face", &count, &face)?;
+    folder.write("all.side", &count, &side)?;
     folder.write("all.t", &count, &t)?;
-    folder.write("all.group", &count, &of_groups)?;
-    folder.write("all.crossing", &count, &crossings)
+    folder.write("all.group", &count, &group)?;
+    folder.write("all.crossing", &count, &crossing)
 }
 
 /// The returns of all beams: arrays of the rays' shape, of that of the beams, and of as many places for each beam as may be told.
