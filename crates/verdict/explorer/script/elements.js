@@ -80,6 +80,19 @@ export function menu(label, entries, value, action) {
 }
 
 /**
+ * A box to tick, and the label with its words.
+ * @param {string} words
+ * @param {boolean} isOn
+ * @param {(isOn: boolean) => void} action
+ * @param {Record<string, AttributeValue>} [attributes] of the box
+ */
+export function checkbox(words, isOn, action, attributes = {}) {
+  const input = element('input', { type: 'checkbox', checked: isOn, ...attributes });
+  input.addEventListener('change', () => action(input.checked));
+  return { input, label: element('label', {}, input, ` ${words}`) };
+}
+
+/**
  * A table of values with names above all columns but the first, and what rows are called in the first.
  * @param {string[]} heads
  * @param {HTMLElement[]} rows

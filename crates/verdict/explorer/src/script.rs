@@ -17,6 +17,7 @@ const MODULES: &[(&str, &str)] = modules![
     "panel/colour.js"
     "elements.js"
     "frame.js"
+    "view3d/frame_elements.js"
     "keyboard.js"
     "data/numbers.js"
     "data/limits.js"

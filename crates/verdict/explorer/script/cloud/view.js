@@ -3,7 +3,8 @@
 // For tests: `[data-cloud-3d]` has `data-state` (waiting, ready, failed), `data-points` (points drawn) and
 // `data-frames` (pictures drawn).
 
-import { button, element, menu } from '../elements.js';
+import { button, checkbox, element, menu } from '../elements.js';
+import { TURN_HELP, pictureFrame } from '../view3d/frame_elements.js';
 import { Terrain } from '../view3d/terrain.js';
 import { ViewCamera, orbitPose } from '../view3d/camera.js';
 import { ViewControls } from '../view3d/controls.js';
@@ -33,7 +34,7 @@ const POINT_SIZES = [1, 2, 3, 5];
 const BARE_POINT = 0xffe600ff;
 
 const CLOUD_HELP =
-  'Drag: turn. Shift or right button, or two fingers: move. Wheel: zoom. The points have the colours of the map above, ' +
+  `${TURN_HELP} Wheel: zoom. The points have the colours of the map above, ` +
   'also by its limits: choose there or here what they show. They are those of A; of B if B alone is shown.';
 
 export class CloudView {
@@ -61,21 +62,18 @@ export class CloudView {
     this.size = 2;
     this.ticket = 0;
     this.frames = 0;
-    this.canvas = element('canvas', {
-      class: 'view3d-canvas',
-      tabindex: '0',
-      role: 'img',
-      'aria-keyshortcuts': 'ArrowLeft ArrowRight ArrowUp ArrowDown + - Home',
-      'aria-label':
-        'The points in three dimensions. Arrow keys turn, with Shift they move, + and − zoom, Home shows all.',
-    });
-    this.message = element('p', { class: 'view3d-message', role: 'status' }, 'The points are being read.');
-    this.box = element('div', { class: 'view3d-stage' }, this.canvas, this.message);
-    const mesh = element('input', { type: 'checkbox', checked: true, 'data-cloud-mesh': true });
-    mesh.addEventListener('change', () => {
-      this.showsMesh = mesh.checked;
+    const frame = pictureFrame(
+      'The points in three dimensions. Arrow keys turn, with Shift they move, + and − zoom, Home shows all.',
+      'The points are being read.',
+    );
+    this.canvas = frame.canvas;
+    this.message = frame.message;
+    this.box = frame.stage;
+    const showMesh = (/** @type {boolean} */ isShown) => {
+      this.showsMesh = isShown;
       this.ask();
-    });
+    };
+    const mesh = checkbox('mesh', true, showMesh, { 'data-cloud-mesh': true });
     /** @type {[string, string][]} */
     const channels = host.channels.map(({ key, title }) => [key, title]);
     this.chooser = menu('what the colours of the points show', channels, state.choice.channel, (channel) =>
@@ -99,7 +97,7 @@ export class CloudView {
         this.chooser,
         button('all', () => this.goTo('all'), { 'data-cloud-view': 'all' }),
         button('from above', () => this.goTo('top'), { 'data-cloud-view': 'top' }),
-        element('label', {}, mesh, ' mesh'),
+        mesh.label,
         size,
       ),
       this.box,

@@ -14,7 +14,7 @@
 // `tr[data-drive-sector=N]`, `[data-drive-3d]`, `[data-drive-charts]`, `[data-drive-says]`. The address `#frame/120`
 // (or `#frame/120/sector/7`) names a frame of the drive.
 
-import { button, element, menu } from '../elements.js';
+import { button, checkbox, element, menu } from '../elements.js';
 import { DriveRecord } from './model.js';
 import { MapReplay } from './replay.js';
 import { DriveGround } from './ground.js';
@@ -134,10 +134,11 @@ export class DrivePanel {
 
   /** @param {MapSwitch} key @param {string} words */
   switch(key, words) {
-    const box = element('input', { type: 'checkbox', checked: this.state.choice[key], 'data-drive-switch': key });
-    box.addEventListener('change', () => this.state.set({ [key]: box.checked }));
-    this.state.listen((changed) => { if (changed.has(key)) { box.checked = this.state.choice[key]; } });
-    return element('label', {}, box, ` ${words}`);
+    const { state } = this;
+    const set = (/** @type {boolean} */ isOn) => state.set({ [key]: isOn });
+    const { input, label } = checkbox(words, state.choice[key], set, { 'data-drive-switch': key });
+    state.listen((changed) => { if (changed.has(key)) { input.checked = state.choice[key]; } });
+    return label;
   }
 
   async readGround() {

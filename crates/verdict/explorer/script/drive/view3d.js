@@ -83,7 +83,7 @@ export class DriveView3d {
       },
     });
     this.element = this.elements.root;
-    this.overlay = new SceneOverlay(this.elements.overlay, this.elements.labels);
+    this.overlay = new SceneOverlay(this.elements.canvas);
     new ViewControls(this.elements.canvas, this.camera, {
       setPose: (pose) => this.setPose(pose),
       bounds: () => this.bounds,

@@ -1,7 +1,8 @@
 // The elements of the drive's 3-D picture: buttons of views, switches, canvas, labels. They look as those of the
 // 3-D panel.
 
-import { button, element, menu } from '../elements.js';
+import { button, checkbox, element, menu } from '../elements.js';
+import { TURN_HELP, pictureFrame } from '../view3d/frame_elements.js';
 import { lengthInWords } from '../view3d/words.js';
 
 /** @typedef {'ground'|'cells'|'sheets'|'frustum'|'sectors'|'grid'} DriveShow */
@@ -28,19 +29,15 @@ const DRIVE_VIEWS = [
 /** Heights of the map over its elevations, metres. */
 const CELL_LIFTS = [0, 0.02, 0.1, 0.5];
 
-const VIEW3D_HELP = 'Drag: turn. Shift or right button, or two fingers: move. Wheel: zoom. Double click: turn about '
-  + 'that place. The map has the colours of the map above. The vehicle stands where it truly is, and its sheets of '
+const VIEW3D_HELP = `${TURN_HELP} Wheel: zoom. Double click: turn about that place. `
+  + 'The map has the colours of the map above. The vehicle stands where it truly is, and its sheets of '
   + 'light end on the true ground.';
 
 /** @param {boolean} follows @param {number} lift metres @param {View3dActions} actions */
 export function view3dElements(follows, lift, actions) {
-  const switches = DRIVE_SHOWS.map(([name, words]) => {
-    const box = element('input', { type: 'checkbox', checked: true, 'data-drive-show': name });
-    box.addEventListener('change', () => actions.show(name, box.checked));
-    return element('label', {}, box, ` ${words}`);
-  });
-  const follow = element('input', { type: 'checkbox', checked: follows, 'data-drive-follow': true });
-  follow.addEventListener('change', () => actions.follow(follow.checked));
+  const switches = DRIVE_SHOWS.map(([name, words]) => (
+    checkbox(words, true, (isShown) => actions.show(name, isShown), { 'data-drive-show': name }).label));
+  const follow = checkbox('follow the vehicle', follows, actions.follow, { 'data-drive-follow': true });
   const views = DRIVE_VIEWS.map(
     ([name, words]) => button(words, () => actions.view(name), { 'data-drive-view': name }));
   /** @type {[string, string][]} */
@@ -48,20 +45,12 @@ export function view3dElements(follows, lift, actions) {
     [String(height), height === 0 ? 'map at its height' : `map ${lengthInWords(height)} up`]));
   const lifts = menu('height of the map over its elevations', heights, String(lift),
     (value) => actions.lift(Number(value)));
-  const canvas = element('canvas', {
-    class: 'view3d-canvas', tabindex: '0', role: 'img',
-    'aria-keyshortcuts': 'ArrowLeft ArrowRight ArrowUp ArrowDown + - Home',
-    'aria-label': 'The drive in three dimensions. Arrow keys turn, with Shift they move, + and − zoom, '
-      + 'Home goes back to the vehicle.',
-  });
-  const overlay = element('canvas', { class: 'view3d-overlay', 'aria-hidden': 'true' });
-  const labels = element('div', { class: 'view3d-labels', 'aria-hidden': 'true' });
-  const message = element('p', { class: 'view3d-message', role: 'status' }, 'The ground is being read.');
-  const stage = element('div', { class: 'view3d-stage' }, canvas, overlay, labels, message);
+  const frame = pictureFrame('The drive in three dimensions. Arrow keys turn, with Shift they move, + and − zoom, '
+    + 'Home goes back to the vehicle.', 'The ground is being read.');
   const root = element('div', { class: 'view3d drive-3d', 'data-drive-3d': true, 'data-state': 'waiting' },
     element('div', { class: 'view3d-bar', role: 'toolbar', 'aria-label': 'Views' }, ...views,
-      element('label', {}, follow, ' follow the vehicle'), lifts),
-    element('div', { class: 'view3d-bar', role: 'group', 'aria-label': 'What is shown' }, ...switches), stage,
+      follow.label, lifts),
+    element('div', { class: 'view3d-bar', role: 'group', 'aria-label': 'What is shown' }, ...switches), frame.stage,
     element('p', { class: 'view3d-help soft' }, VIEW3D_HELP));
-  return { root, stage, canvas, overlay, labels, message, follow };
+  return { root, ...frame, follow: follow.input };
 }

@@ -1,6 +1,7 @@
 // What lies over the picture: labels and marks at their places, the bar of scale, the frame of the camera's
 // image.
 
+import { element } from '../elements.js';
 import { LabelLayer } from './labels.js';
 import { OverlayCanvas } from './overlay.js';
 import { cssOfColour } from './theme.js';
@@ -25,9 +26,12 @@ const SCALE_FONT = '600 12px system-ui, sans-serif';
 
 /** The labels and marks of drawings over any 3-D picture, and its bar of scale. */
 export class SceneOverlay {
-  /** @param {HTMLCanvasElement} canvas @param {HTMLElement} labels */
-  constructor(canvas, labels) {
-    this.overlay = new OverlayCanvas(canvas);
+  /** @param {HTMLCanvasElement} canvas of the picture, over which it lies */
+  constructor(canvas) {
+    const overlay = element('canvas', { class: 'view3d-overlay', 'aria-hidden': 'true' });
+    const labels = element('div', { class: 'view3d-labels', 'aria-hidden': 'true' });
+    canvas.after(overlay, labels);
+    this.overlay = new OverlayCanvas(overlay);
     this.labels = new LabelLayer(labels);
   }
 
@@ -81,7 +85,7 @@ export class OverPicture {
   constructor(panel, model) {
     this.panel = panel;
     this.model = model;
-    this.scene = new SceneOverlay(panel.overlay, panel.labels);
+    this.scene = new SceneOverlay(panel.canvas);
   }
 
   /**

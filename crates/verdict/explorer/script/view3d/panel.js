@@ -1,6 +1,8 @@
 // The elements of the 3-D panel: buttons of views, switches, canvas, key of colours, caption.
 
+import { button, checkbox, element, menu } from '../elements.js';
 import { gradientOf } from '../panel/colour.js';
+import { TURN_HELP, pictureFrame } from './frame_elements.js';
 import { cssOfColour, colourOfMaterial } from './theme.js';
 import { digitsOf } from './words.js';
 
@@ -22,136 +24,97 @@ const SHOW_WORDS = /** @type {const} */ ([
 /** From so many beams on, they are chosen from a list. */
 const BEAMS_AS_LIST = 4;
 
-/**
- * @template {keyof HTMLElementTagNameMap} K
- * @param {K} tag
- * @param {string} className
- * @param {string} [text]
- * @returns {HTMLElementTagNameMap[K]}
- */
-function panelElement(tag, className, text) {
-  const element = document.createElement(tag);
-  if (className) element.className = className;
-  if (text !== undefined) element.textContent = text;
-  return element;
-}
+/** @type {[TerrainColour, string][]} */
+const GROUND_COLOURS = [
+  ['material', 'material'],
+  ['elevation', 'elevation'],
+  ['slope', 'slope'],
+  ['face', 'face'],
+];
+
+const PANEL_HELP =
+  `${TURN_HELP} Wheel or two fingers: zoom. Double click: turn about that place. Keys, after a click on the ` +
+  'picture: arrows turn, Shift and arrows move, + and − zoom, Home goes back.';
 
 /** The panel in the page. */
 export class ViewPanel {
   /** @param {HTMLElement} host @param {PageModel3d} model @param {PanelActions} actions */
   constructor(host, model, actions) {
-    this.root = panelElement('div', 'view3d');
-    this.root.dataset.state = 'loading';
     this.actions = actions;
     /** @type {Record<ShowName, HTMLInputElement>} */
     this.shows = /** @type {any} */ ({});
-    this.colourChoice = panelElement('select', '');
-    this.root.append(this.#views(model), this.#switches());
-    this.stage = panelElement('div', 'view3d-stage');
-    this.canvas = panelElement('canvas', 'view3d-canvas');
-    this.canvas.tabIndex = 0;
-    this.canvas.setAttribute('role', 'img');
-    this.canvas.setAttribute(
-      'aria-label',
+    this.colourChoice = menu('ground by', GROUND_COLOURS, 'material', () => actions.change());
+    this.colourChoice.dataset.colour = '';
+    const frame = pictureFrame(
       'The scene in three dimensions. The text below says what is seen.',
+      'The terrain is being read.',
     );
-    this.canvas.setAttribute('aria-keyshortcuts', 'ArrowLeft ArrowRight ArrowUp ArrowDown + - Home');
-    this.overlay = panelElement('canvas', 'view3d-overlay');
-    this.overlay.setAttribute('aria-hidden', 'true');
-    this.labels = panelElement('div', 'view3d-labels');
-    this.labels.setAttribute('aria-hidden', 'true');
-    this.message = panelElement('p', 'view3d-message', 'The terrain is being read.');
-    this.message.setAttribute('role', 'status');
-    this.stage.append(this.canvas, this.overlay, this.labels, this.message);
-    this.key = panelElement('div', 'view3d-key');
-    this.caption = panelElement('div', 'view3d-caption');
-    this.caption.setAttribute('aria-live', 'polite');
-    this.notes = panelElement('p', 'view3d-notes soft');
-    this.root.append(
+    this.canvas = frame.canvas;
+    this.message = frame.message;
+    this.stage = frame.stage;
+    this.key = element('div', { class: 'view3d-key' });
+    this.caption = element('div', { class: 'view3d-caption', 'aria-live': 'polite' });
+    this.notes = element('p', { class: 'view3d-notes soft' });
+    this.root = element(
+      'div',
+      { class: 'view3d', 'data-state': 'loading' },
+      this.#views(model),
+      this.#switches(),
       this.stage,
       this.key,
       this.caption,
       this.notes,
-      panelElement(
-        'p',
-        'view3d-help soft',
-        'Drag: turn. Shift or right button, or two fingers: move. Wheel or two fingers: zoom. Double click: ' +
-          'turn about that place. Keys, after a click on the picture: arrows turn, Shift and arrows move, ' +
-          '+ and − zoom, Home goes back.',
-      ),
+      element('p', { class: 'view3d-help soft' }, PANEL_HELP),
     );
     host.append(this.root);
   }
 
   /** @param {PageModel3d} model */
   #views(model) {
-    const bar = panelElement('div', 'view3d-bar');
-    bar.setAttribute('role', 'toolbar');
-    bar.setAttribute('aria-label', 'Views');
-    bar.append(panelElement('span', 'view3d-word', 'View'));
-    /** @param {string} name @param {string} text @param {string} title */
-    const button = (name, text, title) => {
-      const element = panelElement('button', '', text);
-      element.type = 'button';
-      element.dataset.view = name;
-      element.title = title;
-      element.setAttribute('aria-pressed', 'false');
-      element.addEventListener('click', () => this.actions.view(name));
-      bar.append(element);
-    };
-    button('overview', 'Overview', 'Rig, ray and ground');
-    button('top', 'Top', 'From above, forward is up');
-    if (model.sensors.some((sensor) => sensor.camera))
-      button('camera', 'From the camera', 'The perspective of the camera image');
+    /** @param {string} name @param {string} words @param {string} title */
+    const view = (name, words, title) =>
+      button(words, () => this.actions.view(name), { 'data-view': name, title, 'aria-pressed': 'false' });
     const beams = model.sensors.filter((sensor) => sensor.kind === 'beam');
-    if (beams.length < BEAMS_AS_LIST) {
-      for (const beam of beams) button(beam.name, `From ${beam.name}`, 'From the middle of the laser');
-    } else {
-      const list = panelElement('select', '');
-      list.dataset.beams = '';
-      list.setAttribute('aria-label', 'From a beam');
-      list.append(
-        new Option('From a beam', ''),
-        ...beams.map((beam) => new Option(`From ${beam.name}`, beam.name)),
-      );
-      list.addEventListener('change', () => {
-        if (list.value) this.actions.view(list.value);
-      });
-      bar.append(list);
-    }
-    button('ray', 'Along the ray', 'Along the chosen ray, shortly before its hit');
-    button('close', 'Close up', 'The hit, as large as the distance between different hits');
-    return bar;
+    const hasCamera = model.sensors.some((sensor) => sensor.camera);
+    const ofCamera = view('camera', 'From the camera', 'The perspective of the camera image');
+    return element(
+      'div',
+      { class: 'view3d-bar', role: 'toolbar', 'aria-label': 'Views' },
+      element('span', { class: 'view3d-word' }, 'View'),
+      view('overview', 'Overview', 'Rig, ray and ground'),
+      view('top', 'Top', 'From above, forward is up'),
+      ...(hasCamera ? [ofCamera] : []),
+      ...(beams.length < BEAMS_AS_LIST
+        ? beams.map(({ name }) => view(name, `From ${name}`, 'From the middle of the laser'))
+        : [this.#beamList(beams.map(({ name }) => name))]),
+      view('ray', 'Along the ray', 'Along the chosen ray, shortly before its hit'),
+      view('close', 'Close up', 'The hit, as large as the distance between different hits'),
+    );
+  }
+
+  /** @param {string[]} names */
+  #beamList(names) {
+    /** @type {[string, string][]} */
+    const entries = [['', 'From a beam'], ...names.map((name) => /** @type {[string, string]} */ ([name, `From ${name}`]))];
+    const list = menu('From a beam', entries, '', (name) => {
+      if (name) this.actions.view(name);
+    });
+    list.dataset.beams = '';
+    return list;
   }
 
   #switches() {
-    const bar = panelElement('div', 'view3d-bar');
-    bar.setAttribute('role', 'group');
-    bar.setAttribute('aria-label', 'What is shown');
-    const label = panelElement('label', '', 'Ground by ');
-    const words = /** @type {const} */ ([
-      ['material', 'material'],
-      ['elevation', 'elevation'],
-      ['slope', 'slope'],
-      ['face', 'face'],
-    ]);
-    for (const [value, text] of words) this.colourChoice.append(new Option(text, value));
-    this.colourChoice.dataset.colour = '';
-    this.colourChoice.addEventListener('change', () => this.actions.change());
-    label.append(this.colourChoice);
-    bar.append(label);
-    for (const [name, text, isOn] of SHOW_WORDS) {
-      const choice = panelElement('label', '');
-      const input = panelElement('input', '');
-      input.type = 'checkbox';
-      input.checked = isOn;
-      input.dataset.show = name;
-      input.addEventListener('change', () => this.actions.change());
+    const boxes = SHOW_WORDS.map(([name, words, isOn]) => {
+      const { input, label } = checkbox(words, isOn, () => this.actions.change(), { 'data-show': name });
       this.shows[name] = input;
-      choice.append(input, ` ${text}`);
-      bar.append(choice);
-    }
-    return bar;
+      return label;
+    });
+    return element(
+      'div',
+      { class: 'view3d-bar', role: 'group', 'aria-label': 'What is shown' },
+      element('label', {}, 'Ground by ', this.colourChoice),
+      ...boxes,
+    );
   }
 
   /** @param {ShowName} name */
@@ -199,7 +162,7 @@ export class ViewPanel {
   /** @param {string[]} sentences */
   setCaption(sentences) {
     this.caption.replaceChildren(
-      ...sentences.map((text, k) => panelElement('p', k === 0 ? 'view3d-name' : '', text)),
+      ...sentences.map((text, k) => element('p', { class: k === 0 ? 'view3d-name' : null }, text)),
     );
     const start = 'The scene in three dimensions. ';
     this.canvas.setAttribute(
@@ -216,32 +179,23 @@ export class ViewPanel {
    * @param {number[] | null} heights lowest and highest ground, metres
    */
   setKey(colours, lines, model, heights) {
-    const parts = lines.map(({ name, text, look }) => {
-      const entry = panelElement('span', 'view3d-entry');
-      const sample = panelElement('i', look);
-      sample.style.setProperty('--sample', cssOfColour(colours[name]));
-      entry.append(sample, text);
-      return entry;
-    });
+    /** @param {string} look of the sample @param {string} colour */
+    const sample = (look, colour) => element('i', { class: look, style: `--sample: ${colour}` });
+    /** @param {...(Node|string)} children */
+    const entry = (...children) => element('span', { class: 'view3d-entry' }, ...children);
+    const parts = lines.map(({ name, text, look }) => entry(sample(look, cssOfColour(colours[name])), text));
     const by = this.terrainColour;
     if (by === 'material') {
       model.mesh.material_names.slice(0, 6).forEach((text, material) => {
-        const entry = panelElement('span', 'view3d-entry');
-        const sample = panelElement('i', 'block');
-        sample.style.setProperty('--sample', cssOfColour(colourOfMaterial(colours, material)));
-        entry.append(sample, text === '' ? `material ${material}` : text);
-        parts.push(entry);
+        const block = sample('block', cssOfColour(colourOfMaterial(colours, material)));
+        parts.push(entry(block, text === '' ? `material ${material}` : text));
       });
     } else if (by === 'face') {
-      parts.push(panelElement('span', 'view3d-entry', 'Neighbouring faces have different colours.'));
+      parts.push(entry('Neighbouring faces have different colours.'));
     } else if (heights) {
       const [low, high] =
         by === 'slope' ? ['level', 'upright'] : heights.map((height) => `${digitsOf(height, 4)} m`);
-      const entry = panelElement('span', 'view3d-entry');
-      const sample = panelElement('i', 'ramp');
-      sample.style.setProperty('--sample', gradientOf('viridis'));
-      entry.append(low, sample, high);
-      parts.push(entry);
+      parts.push(entry(low, sample('ramp', gradientOf('viridis')), high));
     }
     this.key.replaceChildren(...parts);
   }
