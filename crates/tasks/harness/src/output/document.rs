@@ -17,7 +17,7 @@ use crate::output::reading::HOW_TO_READ;
 use crate::output::screen::{Extent, MAX_COLUMNS, ScreenBlocks, screen_blocks};
 use crate::output::summary::{FORMAT, summary_keys};
 use crate::output::table::{causes, quantities, sensor_by_sensor, sensors, times, title};
-use crate::output::verdict::{CAVEAT, Verdict, explanation, headline};
+use crate::output::verdict::{CAVEAT, Ruled, Verdict};
 use crate::validation::{Pair, Validation};
 
 /// Maximum listed defects per sensor.
@@ -82,9 +82,9 @@ pub fn whole_screen(validation: &Validation, folder: Option<&Path>) -> String {
 /// The document whose screen has that extent.
 fn document(validation: &Validation, extent: Extent<'_>, pictures: Pictures, explorer: String) -> Document {
     let Validation { subject, rendered, pairs, stages, .. } = validation;
-    let verdict = Verdict::of(validation);
+    let ruled = Ruled::of(validation);
     let names: Vec<&str> = rendered.iter().map(|rendered| rendered.name.as_str()).collect();
-    let ScreenBlocks { question, blocks, remarks, worst } = screen_blocks(validation, extent);
+    let ScreenBlocks { question, blocks, remarks, worst } = screen_blocks(&ruled, extent);
 
     let mut groups: Vec<DefectGroup> = pairs.iter().flat_map(|pair| defects(validation, pair)).collect();
     groups.extend(all_misses(validation));
@@ -116,17 +116,17 @@ fn document(validation: &Validation, extent: Extent<'_>, pictures: Pictures, exp
     blocks.push(page("How to read this page", HOW_TO_READ.iter().map(ToString::to_string).collect()));
 
     // A screen has room for the reasons of a verdict that is none.
-    let is_open = verdict.outcome() == Outcome::Open;
-    let reasons = if is_open { Vec::new() } else { vec![explanation(validation)] };
-    let caveat = (verdict == Verdict::Agree).then(|| CAVEAT.to_string());
+    let is_open = ruled.verdict.outcome() == Outcome::Open;
+    let reasons = if is_open { Vec::new() } else { vec![ruled.explanation.clone()] };
+    let caveat = (ruled.verdict == Verdict::Agree).then(|| CAVEAT.to_string());
     Document {
         run: format!("raypencil validate {}", subject.arguments),
         question,
-        outcome: verdict.outcome(),
-        headline: format!("{}.", headline(validation)),
+        outcome: ruled.verdict.outcome(),
+        headline: format!("{}.", ruled.headline),
         remarks,
         explanation: reasons.into_iter().chain(caveat).collect(),
-        counts: counts(validation),
+        counts: counts(&ruled),
         facts: vec![
             ("Scene", subject.name.clone()),
             ("Rendered by", list(&names)),
@@ -135,10 +135,10 @@ fn document(validation: &Validation, extent: Extent<'_>, pictures: Pictures, exp
             ("To run again", format!("raypencil validate {}{}", subject.arguments, typed(validation))),
         ],
         blocks,
-        suites: suites(validation),
+        suites: suites(&ruled),
         format: FORMAT,
-        verdict: verdict.key(),
-        data: summary_keys(validation),
+        verdict: ruled.verdict.key(),
+        data: summary_keys(&ruled),
         explorer,
     }
 }
@@ -154,8 +154,7 @@ fn stands(subject: &Subject) -> Vec<String> {
     [frame.into(), found.vehicle_line()].into_iter().chain(sensors).chain(terrain).chain(file).collect()
 }
 
-fn counts(validation: &Validation) -> Vec<Count> {
-    let counts = validation.counts();
+fn counts(Ruled { validation, counts, .. }: &Ruled<'_>) -> Vec<Count> {
     let one = |number, name, meaning, is_bad| Count { number: count(number), name, meaning, is_bad };
     let mut all = vec![
         one(counts.compared, "compared", "rays: pencils and pixels", counts.compared == 0),

@@ -2,7 +2,7 @@
 
 use crate::monte_carlo::Z_TEST_LIMITS;
 use crate::output::candidates::line;
-use crate::output::verdict::{Verdict, explanation, headline, told};
+use crate::output::verdict::{Ruled, Verdict, told};
 use crate::scoreboard::CandidateReport;
 use crate::validation::Validation;
 use raypencil_judge::{Class, ItemTally, ListedDefect, Quantity, SensorResult};
@@ -14,7 +14,9 @@ use raypencil_scene_io::{Subject, probe_command};
 const LISTED: usize = 5;
 
 /// All suites.
-pub(super) fn suites(validation: &Validation) -> Vec<JunitSuite> {
+pub(super) fn suites(
+    Ruled { validation, verdict, headline, explanation, .. }: &Ruled<'_>,
+) -> Vec<JunitSuite> {
     let subject = &validation.subject;
     let mut suites = Vec::new();
     for pair in &validation.pairs {
@@ -44,18 +46,18 @@ pub(super) fn suites(validation: &Validation) -> Vec<JunitSuite> {
         suites.push(candidate_suite(validation, candidate));
     }
     // Skipped cases alone would look like a pass.
-    if Verdict::of(validation) == Verdict::NothingCompared {
-        let case = JunitCase::failed("something is compared", "nothing_compared", headline(validation));
+    if *verdict == Verdict::NothingCompared {
+        let case = JunitCase::failed("something is compared", "nothing_compared", headline.as_str());
         let mut suite = JunitSuite::new(subject.name.as_str());
-        suite.push(case.with_text(explanation(validation)));
+        suite.push(case.with_text(explanation.as_str()));
         suites.push(suite);
     }
     // So would cases that pass because all renderers see nothing.
-    if Verdict::of(validation) == Verdict::NothingHit {
+    if *verdict == Verdict::NothingHit {
         let case = match validation.allow_empty {
-            true => JunitCase::skipped("something is hit", headline(validation)),
-            false => JunitCase::failed("something is hit", "nothing_hit", headline(validation))
-                .with_text(explanation(validation)),
+            true => JunitCase::skipped("something is hit", headline.as_str()),
+            false => JunitCase::failed("something is hit", "nothing_hit", headline.as_str())
+                .with_text(explanation.as_str()),
         };
         let mut suite = JunitSuite::new(subject.name.as_str());
         suite.push(case);

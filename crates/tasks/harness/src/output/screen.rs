@@ -11,7 +11,7 @@ use raypencil_survey::Whereabouts;
 
 use crate::output::candidates;
 use crate::output::table::{hits, quantities_of_screen, short, worst};
-use crate::output::verdict::{Verdict, defects, explanation, rays};
+use crate::output::verdict::{Ruled, Verdict, defects, rays};
 use crate::validation::Validation;
 
 /// Maximum columns of a line. Only paths and commands, which are for copying, may be longer.
@@ -85,7 +85,8 @@ pub(super) struct ScreenBlocks {
     pub(super) worst: Vec<DefectLine>,
 }
 
-pub(super) fn screen_blocks(validation: &Validation, extent: Extent<'_>) -> ScreenBlocks {
+pub(super) fn screen_blocks(ruled: &Ruled<'_>, extent: Extent<'_>) -> ScreenBlocks {
+    let validation = ruled.validation;
     let room = extent.room();
     let warnings = warnings(validation, room);
     let worst = worst_defects(validation, warnings.lines().count(), room);
@@ -95,7 +96,7 @@ pub(super) fn screen_blocks(validation: &Validation, extent: Extent<'_>) -> Scre
         room: raypencil_report::Room::Screen,
     };
     let blocks = vec![
-        Block::Table { title: "", grid: quantities(validation, room) },
+        Block::Table { title: "", grid: quantities(ruled, room) },
         text(sensors(validation, room)),
         text(ray_sets(validation, room)),
         text(approximations(validation, room)),
@@ -104,7 +105,7 @@ pub(super) fn screen_blocks(validation: &Validation, extent: Extent<'_>) -> Scre
         text(files(validation, extent.folder(), room)),
         text(warnings),
     ];
-    ScreenBlocks { question: head(validation, room), blocks, remarks: remarks(validation), worst }
+    ScreenBlocks { question: head(validation, room), blocks, remarks: remarks(ruled), worst }
 }
 
 /// The scene, its renderers, where vehicle and terrain are, and what was rounded.
@@ -130,11 +131,11 @@ fn head(validation: &Validation, room: Room) -> String {
 }
 
 /// The table of quantities and classes over all sensors.
-fn quantities(validation: &Validation, room: Room) -> Grid {
-    let whole = quantities_of_screen(validation, true);
+fn quantities(ruled: &Ruled<'_>, room: Room) -> Grid {
+    let whole = quantities_of_screen(ruled, true);
     // With huge counts there is no room for the places; the report has them.
     let is_too_wide = room == Room::Terminal && whole.to_table().with_gap(1).width() > MAX_COLUMNS;
-    if is_too_wide { quantities_of_screen(validation, false) } else { whole }
+    if is_too_wide { quantities_of_screen(ruled, false) } else { whole }
 }
 
 /// A line for each sensor, over all pairs.
@@ -298,13 +299,12 @@ fn warnings(validation: &Validation, room: Room) -> String {
 }
 
 /// What was not compared, why the verdict is none, and why candidates are wrong.
-fn remarks(validation: &Validation) -> Vec<String> {
-    let counts = validation.counts();
-    let mut remarks = match Verdict::of(validation) {
+fn remarks(Ruled { validation, counts, verdict, explanation, .. }: &Ruled<'_>) -> Vec<String> {
+    let mut remarks = match verdict {
         Verdict::Agree if counts.not_compared > 0 => {
             vec![format!("{} not compared: one side has no maps.", rays(validation, counts.not_compared))]
         }
-        Verdict::NothingCompared | Verdict::NothingHit => vec![explanation(validation)],
+        Verdict::NothingCompared | Verdict::NothingHit => vec![explanation.clone()],
         _ => Vec::new(),
     };
     remarks.extend(candidates::whys(validation));

@@ -12,6 +12,7 @@ use serde_json::{Map, Value, json};
 
 use crate::output::panel::{ScoreboardSummary, scoreboard_summary};
 use crate::output::table::hits;
+use crate::output::verdict::Ruled;
 use crate::ray_sets::RaySetResult;
 use crate::rendered::Rendered;
 use crate::validation::{Pair, Validation};
@@ -155,9 +156,8 @@ struct StageSummary<'a> {
 }
 
 /// The keys of `summary.json`, but those that every document has.
-pub(super) fn summary_keys(validation: &Validation) -> Map<String, Value> {
+pub(super) fn summary_keys(Ruled { validation, counts, .. }: &Ruled<'_>) -> Map<String, Value> {
     let Validation { subject, rendered, pairs, candidates_may_fail, stages, .. } = validation;
-    let counts = validation.counts();
     let approximations = validation.approximations();
     let summary = Summary {
         passes: validation.passes(),

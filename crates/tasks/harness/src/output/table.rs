@@ -7,6 +7,7 @@ use raypencil_report::{Column, Grid, Room, count, quantity, time};
 use raypencil_scene::{Place, SensorMap, Stage, Switches};
 use raypencil_scene_io::{Subject, probe_command};
 
+use crate::output::verdict::Ruled;
 use crate::rendered::Rendered;
 use crate::validation::{Pair, Validation};
 
@@ -93,9 +94,9 @@ fn add<'a>(
 }
 
 /// The same sum in few columns for a screen, with or without the places.
-pub(super) fn quantities_of_screen(validation: &Validation, with_places: bool) -> Grid {
+pub(super) fn quantities_of_screen(Ruled { validation, counts, .. }: &Ruled<'_>, with_places: bool) -> Grid {
     // The paper's approximations have a column only if there are any.
-    let any_approximation = validation.counts().approximation > 0;
+    let any_approximation = counts.approximation > 0;
     let mut grid = Grid::new([
         Column::text(""),
         Column::number("agree"),

@@ -4,7 +4,7 @@ use raypencil_judge::{Class, Largest, ListedDefect, Quantity, listed_defects, na
 use raypencil_report::{Outcome, count, counted, list, number};
 
 use crate::scoreboard::CandidateReport;
-use crate::validation::Validation;
+use crate::validation::{Counts, Validation};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Verdict {
@@ -25,9 +25,30 @@ pub(crate) const CAVEAT: &str = "Which face is hit, and whether the camera sees 
     arithmetic on every ray whose answers differ and on a sample of the others; the values of these rays were compared \
     with a third computation. A value error that both renderers share, on rays that were not sampled, would go unnoticed.";
 
-impl Verdict {
-    pub(crate) fn of(validation: &Validation) -> Self {
+/// A validation with what every report says of it: counted, ruled and told once.
+pub(super) struct Ruled<'a> {
+    pub(super) validation: &'a Validation,
+    /// Numbers of rays by class.
+    pub(super) counts: Counts,
+    pub(super) verdict: Verdict,
+    /// The verdict as a headline: that on the candidates first if one is wrong.
+    pub(super) headline: String,
+    /// The reasons for the verdict, in one or two sentences.
+    pub(super) explanation: String,
+}
+
+impl<'a> Ruled<'a> {
+    pub(super) fn of(validation: &'a Validation) -> Self {
         let counts = validation.counts();
+        let verdict = Verdict::of(validation, &counts);
+        let headline = headlines(validation, &counts).join("; ");
+        let explanation = explanation(validation, &counts, verdict);
+        Self { validation, counts, verdict, headline, explanation }
+    }
+}
+
+impl Verdict {
+    fn of(validation: &Validation, counts: &Counts) -> Self {
         if counts.defects > 0 {
             Self::Defects
         } else if validation.candidates().iter().any(|report| !report.passes()) {
@@ -70,14 +91,9 @@ pub(crate) fn rays(validation: &Validation, how_many: u64) -> String {
     }
 }
 
-/// The verdict as a headline: that on the candidates first if one is wrong.
-pub(crate) fn headline(validation: &Validation) -> String {
-    headlines(validation).join("; ")
-}
-
 /// The headline in its parts, one on the candidates if there are any, and one on the renderers.
-pub(crate) fn headlines(validation: &Validation) -> Vec<String> {
-    let own = renderers_headline(validation);
+fn headlines(validation: &Validation, counts: &Counts) -> Vec<String> {
+    let own = renderers_headline(validation, counts);
     let Some(theirs) = candidates_headline(validation.candidates()) else { return vec![own] };
     if validation.candidates().iter().all(CandidateReport::passes) {
         return vec![own, theirs];
@@ -93,8 +109,7 @@ fn lower_first(text: &str) -> String {
 }
 
 /// The headline on our own renderers.
-fn renderers_headline(validation: &Validation) -> String {
-    let counts = validation.counts();
+fn renderers_headline(validation: &Validation, counts: &Counts) -> String {
     let compared = rays(validation, counts.compared);
     match (counts.compared, counts.defects) {
         (0, _) => "Nothing was compared".into(),
@@ -157,11 +172,10 @@ fn wrong_parts(report: &CandidateReport) -> String {
 }
 
 /// The reasons for the verdict, in one or two sentences.
-pub(crate) fn explanation(validation: &Validation) -> String {
-    let counts = validation.counts();
+fn explanation(validation: &Validation, counts: &Counts, verdict: Verdict) -> String {
     let names: Vec<&str> = validation.rendered.iter().map(|rendered| rendered.name.as_str()).collect();
     let who = list(&names);
-    let verdict = match (Verdict::of(validation), counts.compared) {
+    let verdict = match (verdict, counts.compared) {
         // What the renderers show is told first.
         (Verdict::CandidatesWrong, 0) => Verdict::NothingCompared,
         (Verdict::CandidatesWrong, _) => Verdict::Agree,
