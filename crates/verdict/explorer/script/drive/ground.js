@@ -1,5 +1,7 @@
 // The true ground: its height under a place and the first face on a ray, by a grid over the faces.
 
+import { hitOfFace } from '../view3d/search.js';
+
 /** @typedef {import('../view3d/vector.js').Point3} Point3 */
 
 /** Room about the box of a face for rounding, metres. */
@@ -172,25 +174,14 @@ export class DriveGround {
 
   /** @param {number} cell @param {Point3} origin @param {Point3} direction @param {number} best */
   #nearestIn(cell, origin, direction, best) {
-    const { vertices, faces, list, starts } = this;
-    const [qx, qy, qz] = direction;
+    const { list, starts } = this;
     let nearest = best;
     for (let at = starts[cell]; at < starts[cell + 1]; at += 1) {
       const face = list[at];
       if (this.tested[face] === this.rays) { continue; }
       this.tested[face] = this.rays;
-      const [a, b, c] = [3 * faces[3 * face], 3 * faces[3 * face + 1], 3 * faces[3 * face + 2]];
-      const [ax, ay, az] = [vertices[a], vertices[a + 1], vertices[a + 2]];
-      const [ux, uy, uz] = [vertices[b] - ax, vertices[b + 1] - ay, vertices[b + 2] - az];
-      const [vx, vy, vz] = [vertices[c] - ax, vertices[c + 1] - ay, vertices[c + 2] - az];
-      const [px, py, pz] = [qy * vz - qz * vy, qz * vx - qx * vz, qx * vy - qy * vx];
-      const determinant = ux * px + uy * py + uz * pz;
-      const [tx, ty, tz] = [origin[0] - ax, origin[1] - ay, origin[2] - az];
-      const ofB = (tx * px + ty * py + tz * pz) / determinant;
-      const [rx, ry, rz] = [ty * uz - tz * uy, tz * ux - tx * uz, tx * uy - ty * ux];
-      const ofC = (qx * rx + qy * ry + qz * rz) / determinant;
-      const t = (vx * rx + vy * ry + vz * rz) / determinant;
-      if (ofB >= 0 && ofC >= 0 && ofB + ofC <= 1 && t > 0 && t < nearest) { nearest = t; }
+      const t = hitOfFace(this, { origin, direction }, face, false);
+      if (t > 0 && t < nearest) { nearest = t; }
     }
     return nearest;
   }

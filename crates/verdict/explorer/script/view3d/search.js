@@ -43,8 +43,7 @@ export async function firstFaceOnRay(terrain, ray, limits, isStale) {
 }
 
 /**
- * One part of the loop. The ray is inside a face if the three volumes that it spans with the sides have one
- * sign; two faces that share a side compute the same number for it, but for the sign.
+ * One part of the loop.
  * @param {Terrain} terrain
  * @param {Ray3} ray
  * @param {SearchLimits} limits
@@ -53,46 +52,56 @@ export async function firstFaceOnRay(terrain, ray, limits, isStale) {
  * @param {{face: number, t: number}} best
  */
 function searchPart(terrain, ray, limits, start, end, best) {
-  const { vertices, faces } = terrain;
-  const vertexCount = vertices.length / 3;
-  const [ox, oy, oz] = ray.origin;
-  const [qx, qy, qz] = ray.direction;
   for (let face = start; face < end; face++) {
-    const ia = faces[3 * face];
-    const ib = faces[3 * face + 1];
-    const ic = faces[3 * face + 2];
-    if (ia >= vertexCount || ib >= vertexCount || ic >= vertexCount) continue;
-    const ax = vertices[3 * ia] - ox;
-    const ay = vertices[3 * ia + 1] - oy;
-    const az = vertices[3 * ia + 2] - oz;
-    const bx = vertices[3 * ib] - ox;
-    const by = vertices[3 * ib + 1] - oy;
-    const bz = vertices[3 * ib + 2] - oz;
-    const ab = qx * (ay * bz - by * az) + qy * (az * bx - bz * ax) + qz * (ax * by - bx * ay);
-    const cx = vertices[3 * ic] - ox;
-    const cy = vertices[3 * ic + 1] - oy;
-    const cz = vertices[3 * ic + 2] - oz;
-    const bc = qx * (by * cz - cy * bz) + qy * (bz * cx - cz * bx) + qz * (bx * cy - cx * by);
-    if ((ab < 0 && bc > 0) || (ab > 0 && bc < 0)) continue;
-    const ca = qx * (cy * az - ay * cz) + qy * (cz * ax - az * cx) + qz * (cx * ay - ax * cy);
-    if (!((ab <= 0 && bc <= 0 && ca <= 0) || (ab >= 0 && bc >= 0 && ca >= 0))) continue;
-    const ux = bx - ax;
-    const uy = by - ay;
-    const uz = bz - az;
-    const vx = cx - ax;
-    const vy = cy - ay;
-    const vz = cz - az;
-    const nx = uy * vz - vy * uz;
-    const ny = uz * vx - vz * ux;
-    const nz = ux * vy - vx * uy;
-    const nq = nx * qx + ny * qy + nz * qz;
-    if (nq === 0 || (limits.frontsOnly && nq > 0)) continue;
-    const t = (nx * ax + ny * ay + nz * az) / nq;
+    const t = hitOfFace(terrain, ray, face, limits.frontsOnly);
     if (!(t >= limits.from) || t > best.t || (t === best.t && best.face >= 0)) continue;
     if (limits.skip && limits.skip.has(face)) continue;
     best.face = face;
     best.t = t;
   }
+}
+
+/**
+ * Where a ray meets a face, as a multiple of its direction; NaN if it does not. It is inside if the three volumes that
+ * it spans with the sides have one sign; two faces that share a side compute the same number for it, but for the sign.
+ * @param {{vertices: Float32Array, faces: Uint32Array}} mesh
+ * @param {Ray3} ray
+ * @param {number} face
+ * @param {boolean} frontsOnly whether a face that is seen from behind is passed through
+ */
+export function hitOfFace({ vertices, faces }, { origin, direction }, face, frontsOnly) {
+  const ia = 3 * faces[3 * face];
+  const ib = 3 * faces[3 * face + 1];
+  const ic = 3 * faces[3 * face + 2];
+  const qx = direction[0];
+  const qy = direction[1];
+  const qz = direction[2];
+  const ax = vertices[ia] - origin[0];
+  const ay = vertices[ia + 1] - origin[1];
+  const az = vertices[ia + 2] - origin[2];
+  const bx = vertices[ib] - origin[0];
+  const by = vertices[ib + 1] - origin[1];
+  const bz = vertices[ib + 2] - origin[2];
+  const ab = qx * (ay * bz - by * az) + qy * (az * bx - bz * ax) + qz * (ax * by - bx * ay);
+  const cx = vertices[ic] - origin[0];
+  const cy = vertices[ic + 1] - origin[1];
+  const cz = vertices[ic + 2] - origin[2];
+  const bc = qx * (by * cz - cy * bz) + qy * (bz * cx - cz * bx) + qz * (bx * cy - cx * by);
+  if ((ab < 0 && bc > 0) || (ab > 0 && bc < 0)) return NaN;
+  const ca = qx * (cy * az - ay * cz) + qy * (cz * ax - az * cx) + qz * (cx * ay - ax * cy);
+  // A face without such a vertex has no number here.
+  if (!((ab <= 0 && bc <= 0 && ca <= 0) || (ab >= 0 && bc >= 0 && ca >= 0))) return NaN;
+  const ux = bx - ax;
+  const uy = by - ay;
+  const uz = bz - az;
+  const vx = cx - ax;
+  const vy = cy - ay;
+  const vz = cz - az;
+  const nx = uy * vz - vy * uz;
+  const ny = uz * vx - vz * ux;
+  const nz = ux * vy - vx * uy;
+  const nq = nx * qx + ny * qy + nz * qz;
+  return nq === 0 || (frontsOnly && nq > 0) ? NaN : (nx * ax + ny * ay + nz * az) / nq;
 }
 
 /**
