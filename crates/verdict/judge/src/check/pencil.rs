@@ -17,7 +17,7 @@ use crate::quantity::{Item, Quantity, RETURN_QUANTITIES};
 use crate::recorded::Recorded;
 use crate::scene_answers::BeamLight;
 use raypencil_referee::{Format, RoundedReturn};
-use raypencil_scene::{Camera, Hit, Mounted, Pixel, Place, Pose, SensorId};
+use raypencil_scene::{Camera, Hit, Mounted, Pixel, Place, Pose, Precision, Return, Scene, SensorId};
 
 /// The exact light of a pencil in the pixel where it is stated to land.
 #[derive(Debug, Clone, Copy)]
@@ -50,21 +50,45 @@ fn missing_light(
     let SensorId::Beam(beam) = place.sensor else { return None };
     let (visible, pixel) = truth.visibility(place);
     let pixel = pixel.filter(|_| visible)?;
-    let (scene, model) = (truth.scene(), truth.scene().flux_model());
+    let (scene, precision) = (truth.scene(), recorded.precision);
     let hit = truth.hit(place)?;
     let exact = truth.judge().rounded_return(place, hit.face, visible, Some(pixel))?;
-    let of_hit =
-        HitBounds::of_exact(scene, &scene.ray(place.sensor, place.i, place.j)?, &hit, recorded.precision);
-    let [own, other] = [model, model.other()].map(|model| exact.in_format(Format::Double, model));
-    let values = ReturnValues::of_exact(scene, &hit, &own);
-    let bounds = ReturnBounds::by_both_models(scene, (beam, place.i), &of_hit, values, recorded.precision);
-    let flux = [own.flux, other.flux];
-    Some(DeliveredLight { pixel, flux, bound: [0, 1].map(|k: usize| flux_bound(&bounds[k], flux[k])), class })
+    let of_hit = HitBounds::of_exact(scene, &scene.ray(place.sensor, place.i, place.j)?, &hit, precision);
+    let told = BoundedReturn::of(scene, (beam, place.i), (&hit, &of_hit), &exact, precision);
+    Some(DeliveredLight { pixel, flux: told.flux(), bound: told.flux_bounds(), class })
 }
 
-/// How far a flux may be off, watts (`eq1`: W/m). No light at all is exactly 0.
-pub(super) fn flux_bound(bounds: &ReturnBounds, flux: f64) -> f64 {
-    if flux == 0.0 { 0.0 } else { bounds.of_flux(flux) }
+/// The exact return of a pencil in f64, by the scene's flux model and by the other, and how far a recording may be off it.
+pub(super) struct BoundedReturn {
+    by_model: [Return; 2],
+    bounds: [ReturnBounds; 2],
+}
+
+impl BoundedReturn {
+    pub(super) fn of(
+        scene: &Scene,
+        pencil: (usize, u32),
+        (hit, of_hit): (&Hit, &HitBounds),
+        exact: &RoundedReturn,
+        precision: Precision,
+    ) -> Self {
+        let model = scene.flux_model();
+        let by_model = [model, model.other()].map(|model| exact.in_format(Format::Double, model));
+        let values = ReturnValues::of_exact(scene, hit, &by_model[0]);
+        Self { by_model, bounds: ReturnBounds::by_both_models(scene, pencil, of_hit, values, precision) }
+    }
+
+    /// The flux by both models, watts (`eq1`: W/m).
+    pub(super) fn flux(&self) -> [f64; 2] {
+        self.by_model.map(|one| one.flux)
+    }
+
+    /// How far each flux may be off, watts (`eq1`: W/m). No light at all is exactly 0.
+    pub(super) fn flux_bounds(&self) -> [f64; 2] {
+        let bound = |k: usize, flux: f64| if flux == 0.0 { 0.0 } else { self.bounds[k].of_flux(flux) };
+        let [own, other] = self.flux();
+        [bound(0, own), bound(1, other)]
+    }
 }
 
 /// Whether a recording tells which pixels the pencils of a beam light.
@@ -82,7 +106,7 @@ struct Hypothesis {
     /// The worst class of hit, visibility and pixel.
     class: Class,
     exact: RoundedReturn,
-    bounds: [ReturnBounds; 2],
+    told: BoundedReturn,
     differences: Vec<Difference>,
 }
 
@@ -127,22 +151,20 @@ impl RecordedPencil<'_> {
             }
         };
         let exact = judge.rounded_return(self.place, hit.face, visible, pixel)?;
-        let (scene, model) = (self.truth.scene(), self.truth.scene().flux_model());
-        let [own, other] = [model, model.other()].map(|model| exact.in_format(Format::Double, model));
-        let values = ReturnValues::of_exact(scene, hit, &own);
-        let bounds =
-            ReturnBounds::by_both_models(scene, (self.beam, self.place.i), of_hit, values, precision);
-        let values = return_values(&self.stated, &own, &bounds[0]);
+        let pencil = (self.beam, self.place.i);
+        let told = BoundedReturn::of(self.truth.scene(), pencil, (hit, of_hit), &exact, precision);
+        let values = return_values(&self.stated, &told.by_model[0], &told.bounds[0]);
         let mut differences = self.recorded.differences(self.place.sensor, values);
-        differences.extend((0..2).filter_map(|k| self.flux_difference(k, [own, other][k].flux, &bounds[k])));
+        let (flux, bounds) = (told.flux(), told.flux_bounds());
+        differences.extend((0..2).filter_map(|k| self.flux_difference(k, flux[k], bounds[k])));
         let class = of_class.max(classes[0]).max(classes[1]);
-        Some(Hypothesis { visible, pixel, classes, ruling, class, exact, bounds, differences })
+        Some(Hypothesis { visible, pixel, classes, ruling, class, exact, told, differences })
     }
 
     /// The difference of the flux by one of the two models.
-    fn flux_difference(&self, k: usize, exact: f64, bounds: &ReturnBounds) -> Option<Difference> {
+    fn flux_difference(&self, k: usize, exact: f64, bound: f64) -> Option<Difference> {
         let item = Item::pencil_flux(k == 1);
-        let value = StatedValue::scalar(item, self.stated.flux[k], exact, flux_bound(bounds, exact))?;
+        let value = StatedValue::scalar(item, self.stated.flux[k], exact, bound)?;
         let difference = stored_difference(&value, self.recorded.storage_of(self.place.sensor, item));
         // No light at all is exactly 0, however it is stored.
         Some(if exact == 0.0 { Difference { bound: Some(0.0), ..difference } } else { difference })
@@ -219,12 +241,10 @@ pub(super) fn judge_return(
     };
     enter(entry, &pencil, &hypothesis, contradicts);
 
-    let model = truth.scene().flux_model();
-    let flux = [model, model.other()].map(|model| hypothesis.exact.in_format(Format::Double, model).flux);
     let delivered = hypothesis.pixel.filter(|_| hypothesis.visible).map(|pixel| DeliveredLight {
         pixel,
-        flux,
-        bound: [flux_bound(&hypothesis.bounds[0], flux[0]), flux_bound(&hypothesis.bounds[1], flux[1])],
+        flux: hypothesis.told.flux(),
+        bound: hypothesis.told.flux_bounds(),
         class: entry.worst().max(hypothesis.class),
     });
     let lands = delivered.map(|delivered| delivered.pixel);

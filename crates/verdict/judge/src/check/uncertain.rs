@@ -1,10 +1,10 @@
 //! Light that may be in a pixel's sum or not, where a recording gives the image alone.
 
-use crate::bounds::{HitBounds, ReturnBounds, ReturnValues};
+use crate::bounds::HitBounds;
 use crate::check::ground_truth::GroundTruth;
-use crate::check::pencil::flux_bound;
+use crate::check::pencil::BoundedReturn;
 use crate::recorded::Recorded;
-use raypencil_referee::{Format, Ruling, VisibilityMargins};
+use raypencil_referee::{Ruling, VisibilityMargins};
 use raypencil_scene::{FaceId, Pixel, Place, SensorId};
 
 /// A pencil is uncertain if its answer changes within this margin, in cells or pixels. The arithmetic of any recording
@@ -57,7 +57,6 @@ pub(super) fn uncertain_fluxes(
         }
     }
     let camera = &truth.scene().camera().sensor;
-    let model = truth.scene().flux_model();
     let ray = truth.scene().ray(sensor, i, j).expect("a pencil of this scene");
     let mut found: Vec<UncertainFlux> = Vec::new();
     let mut true_flux = None;
@@ -76,11 +75,8 @@ pub(super) fn uncertain_fluxes(
                 continue;
             }
             let Some(exact) = judge.rounded_return(place, face, true, Some(pixel)) else { continue };
-            let flux = [model, model.other()].map(|model| exact.in_format(Format::Double, model).flux);
-            let values = ReturnValues::of_exact(truth.scene(), &hit, &exact.in_format(Format::Double, model));
-            let bounds = ReturnBounds::by_both_models(truth.scene(), (beam, i), &of_hit, values, precision);
-            let bound = [flux_bound(&bounds[0], flux[0]), flux_bound(&bounds[1], flux[1])];
-            let option = UncertainFlux { pixel, flux, bound };
+            let told = BoundedReturn::of(truth.scene(), (beam, i), (&hit, &of_hit), &exact, precision);
+            let option = UncertainFlux { pixel, flux: told.flux(), bound: told.flux_bounds() };
             if is_true {
                 true_flux = Some(option);
             } else {
