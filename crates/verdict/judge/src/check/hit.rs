@@ -56,8 +56,8 @@ pub(super) fn judge_hit(
         class,
         bounds: true_hit.map(|hit| bounds(truth, &ray, &hit, recorded)),
     };
+    missing_values(entry, recorded);
     let Some(states_hit) = stated.hits_by_any_value() else {
-        missing_values(entry, recorded);
         entry.missing(Quantity::Hit);
         entry.missing(Quantity::Face);
         return of_truth(Class::Agree);
@@ -103,7 +103,6 @@ pub(super) fn judge_hit(
             entry.difference(&difference, own);
         }
     }
-    missing_values(entry, recorded);
     assumed
 }
 

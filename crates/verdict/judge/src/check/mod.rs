@@ -160,13 +160,9 @@ pub fn check_rays(
     }
     progress.stage("camera: judging");
     let camera = by_rows(truth, SensorId::Camera, |place, row| {
-        if !is_asked(place) {
-            return;
+        if is_asked(place) {
+            judge_ray(truth, recorded, &images, RayEntry::checked(place, row));
         }
-        let mut entry = RayEntry::checked(place, row);
-        judge_hit(truth, recorded, &mut entry);
-        images.iter().for_each(|image| image.judge(truth, recorded, &mut entry));
-        entry.finish(String::new);
     });
     let mut sensors: Vec<SensorResult> = std::iter::once(camera).chain(beams).collect();
     progress.stage("listing the worst defects");
@@ -183,18 +179,26 @@ pub fn check_rays(
     Check { sensors }
 }
 
+/// Judges one ray: its hit; then a pencil's return, or what the beams whose images are given deliver into a pixel.
+fn judge_ray(
+    truth: &GroundTruth<'_>,
+    recorded: &Recorded,
+    images: &[BeamImage],
+    mut entry: RayEntry<'_>,
+) -> PencilContribution {
+    let assumed = judge_hit(truth, recorded, &mut entry);
+    let contribution = judge_return(truth, recorded, &mut entry, &assumed);
+    if entry.place.sensor == SensorId::Camera {
+        images.iter().for_each(|image| image.judge(truth, recorded, &mut entry));
+    }
+    entry.finish(String::new);
+    contribution
+}
+
 /// All that is wrong with one ray, in words: the ray is judged once more by itself.
 fn what_is_wrong(truth: &GroundTruth<'_>, recorded: &Recorded, images: &[BeamImage], place: Place) -> String {
     let mut alone = SensorResult::new(place.sensor);
-    let mut entry = RayEntry::checked(place, &mut alone);
-    let assumed = judge_hit(truth, recorded, &mut entry);
-    match place.sensor {
-        SensorId::Camera => images.iter().for_each(|image| image.judge(truth, recorded, &mut entry)),
-        SensorId::Beam(_) => {
-            judge_return(truth, recorded, &mut entry, &assumed);
-        }
-    }
-    entry.finish(String::new);
+    judge_ray(truth, recorded, images, RayEntry::checked(place, &mut alone));
     alone.defects.pop().map_or(String::new(), |defect| defect.what)
 }
 
@@ -217,11 +221,7 @@ fn check_beam(
                 if !is_asked(place) {
                     return PencilContribution::default();
                 }
-                let mut entry = RayEntry::checked(place, &mut row);
-                let assumed = judge_hit(truth, recorded, &mut entry);
-                let contribution = judge_return(truth, recorded, &mut entry, &assumed);
-                entry.finish(String::new);
-                contribution
+                judge_ray(truth, recorded, &[], RayEntry::checked(place, &mut row))
             });
             let delivered = delivered.collect();
             (row, delivered)
