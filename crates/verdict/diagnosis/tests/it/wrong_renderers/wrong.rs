@@ -132,7 +132,9 @@ fn is_line_of_all<'m>(made: impl Iterator<Item = &'m [Mistake]>, told: &Mistake)
 fn is_alike<'m>(made: impl Iterator<Item = &'m [Mistake]> + Clone, reason: &Reason, told: &Mistake) -> bool {
     let has = |is: &dyn Fn(&Mistake) -> bool| made.clone().flatten().any(is);
     let is_whole = reason.explained == reason.wrong && reason.broken == 0;
-    let is_line = |one: &Mistake| matches!(one, Mistake::Affine { of: Length::Range, .. });
+    // Another unit is a factor, too.
+    let is_line =
+        |one: &Mistake| matches!(one, Mistake::Affine { of: Length::Range, .. } | Mistake::Unit(_));
     let shifts = made.clone().filter_map(|all| all.iter().find_map(cells_off));
     match told {
         Mistake::Rounded { quantum, .. } if has(&|one| matches!(one, Mistake::HalfPrecision(_))) => {
