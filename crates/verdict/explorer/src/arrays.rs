@@ -174,4 +174,4 @@ fn planes(bits: &[u32], bytes: usize) -> Vec<u8> {
 
 #[cfg(test)]
 #[path = "../tests/unit/arrays.rs"]
-mod tests;
+pub(crate) mod tests;

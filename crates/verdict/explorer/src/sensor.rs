@@ -121,3 +121,24 @@ pub(crate) fn sensor_model(scene: &Scene, sensor: SensorId) -> Value {
         "grid": grid,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_margin_of_a_page_is_the_largest_single_number_below_it() {
+        let margins = [0.1, 0.3, 0.7, 1.0 / 3.0, 1e-9, 0.5, 1.0, 1e-60, 0.0];
+        for margin in margins {
+            let on_page = rounded_down(margin);
+            assert!(
+                f64::from(on_page) <= margin && margin < f64::from(on_page.next_up()),
+                "{margin}: {on_page}"
+            );
+        }
+        // The nearest numbers of some lie above them, and of some below.
+        let above = margins.iter().filter(|margin| f64::from(**margin as f32) > **margin).count();
+        assert!(above > 1 && above < margins.len() - 3, "{above}");
+        assert!(rounded_down(f64::NAN).is_nan());
+    }
+}

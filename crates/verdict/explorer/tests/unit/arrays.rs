@@ -5,7 +5,7 @@ use crate::{DifferingCell, RasterChannel, RasterGroup, RasterPage, SideKind};
 use raypencil_judge::Class;
 
 /// Undoes deflate and the steps of a reference.
-fn read(scripts: &str, reference: &Value) -> Vec<u32> {
+pub(crate) fn read(scripts: &str, reference: &Value) -> Vec<u32> {
     let id = format!("id=\"array-{}\">", reference["array"]);
     let text = scripts.split(&id).nth(1).expect("the array").split('<').next().expect("its text");
     let bytes = STANDARD.decode(text).expect("base64");
