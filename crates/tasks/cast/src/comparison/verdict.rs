@@ -140,6 +140,22 @@ impl Comparison {
         self.met > 0 && self.counts().wrong == 0
     }
 
+    /// Appends the comparison of the rays that follow in the same answers, so that many rays can be compared piece by piece.
+    pub fn append(&mut self, later: Self) {
+        let before = self.verdicts.len();
+        self.verdicts.extend(later.verdicts);
+        self.met += later.met;
+        for (tally, more) in self.values.iter_mut().zip(later.values) {
+            tally.compared += more.compared;
+            tally.wrong += more.wrong;
+            // Of equal errors the first ray stays.
+            let is_worse = |(error, _): &(f64, usize)| tally.worst.is_none_or(|(known, _)| *error > known);
+            if let Some((error, ray)) = more.worst.filter(is_worse) {
+                tally.worst = Some((error, before + ray));
+            }
+        }
+    }
+
     /// The wrong rays, by index.
     pub fn wrong(&self) -> impl Iterator<Item = (usize, Wrong)> + '_ {
         self.verdicts.iter().enumerate().filter_map(|(index, verdict)| match verdict {

@@ -173,6 +173,38 @@ fn of_equal_errors_the_first_ray_is_told_and_of_no_ray_that_meets_something_noth
 }
 
 #[test]
+fn rays_that_are_compared_piece_by_piece_are_counted_as_all_at_once() {
+    // The rays twice over; two hits of the first half and two of the second are wrong, by the same error and by a larger one.
+    let rays = [rays().rays, rays().rays].concat();
+    let mut stated = Stated::of(&cast(&square(), &rays, Sides::Both, Questions::default(), &Silent));
+    let t = stated.t.as_mut().unwrap();
+    for (ray, more) in [(0, 0.25), (2, 0.125), (6, 0.25), (8, 0.5)] {
+        t[ray] += more;
+    }
+    let compared = |from: usize, to: usize| {
+        fn some<T: Copy>(all: &Option<Vec<T>>, from: usize, to: usize) -> Option<Vec<T>> {
+            all.as_ref().map(|all| all[from..to].to_vec())
+        }
+        // Of a piece the t alone, as of all.
+        let piece =
+            Stated { face: some(&stated.face, from, to), t: some(&stated.t, from, to), ..Stated::default() };
+        compare(&square(), &rays[from..to], Sides::Both, &piece, Precision::F64, &Silent)
+    };
+    let whole = compared(0, rays.len());
+    assert_eq!((whole.counts().wrong, whole.values[0].wrong), (4, 4));
+    assert_eq!(whole.values[0].worst.map(|(_, ray)| ray), Some(8));
+    for cut in 1..rays.len() {
+        let mut pieces = compared(0, cut);
+        pieces.append(compared(cut, rays.len()));
+        assert_eq!(pieces, whole, "cut before ray {cut}");
+    }
+    // Of equal errors in two pieces the first is told.
+    let mut twice = compared(0, 2);
+    twice.append(compared(6, 8));
+    assert_eq!(twice.values[0].worst.map(|(_, ray)| ray), Some(0));
+}
+
+#[test]
 fn storing_a_range_widens_its_own_bound_and_storing_a_point_those_of_point_and_t() {
     let mesh = square();
     let rays = [CastRay::new(DVec3::new(3.0, 1.0, 3.0), DVec3::new(0.0, 0.0, -2.0))];
