@@ -133,3 +133,7 @@ fn run(
     }
     Ok(Some(format!("it ended with {status}: {last}")))
 }
+
+#[cfg(all(test, unix))]
+#[path = "../tests/unit/candidate.rs"]
+mod tests;

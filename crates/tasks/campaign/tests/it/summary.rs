@@ -4,7 +4,7 @@ use raypencil_campaign::{
     Campaign, Merged, PartName, PartRecord, QuantityRecord, ReasonRecord, TerrainRecord, WorstRecord,
     WrongRay, campaign_document, terrain, write_campaign,
 };
-use raypencil_judge::Quantity;
+use raypencil_judge::{Class, Quantity};
 use raypencil_tests::schema::schema_faults;
 use serde_json::Value;
 
@@ -301,4 +301,34 @@ fn the_same_mistake_of_many_scenes_is_one_reason() {
     assert_eq!([&json["reasons"][1]["scenes"], &json["reasons"][1]["explained"]], [1, 8]);
     let schema = include_str!("../../../../../docs/formats/campaign.schema.json");
     assert_eq!(schema_faults(&serde_json::from_str(schema).unwrap(), &json), [""; 0]);
+}
+
+#[test]
+fn a_wrong_ray_of_any_scene_fails_its_own_case_and_stands_on_the_screen() {
+    for (index, part) in PartName::ALL.into_iter().enumerate() {
+        for class in [Class::Undecided, Class::Defect] {
+            let mut merged = made_up([1000, 0, 0, 0, 0, 0], Vec::new());
+            let record = &mut merged.terrains[1].parts[index];
+            record.by_class[Class::Agree as usize] -= 1;
+            record.by_class[class as usize] += 1;
+            record.wrong = vec![wrong_ray()];
+            assert!(!merged.passes());
+            let document = campaign_document(&merged, |_| false);
+            let junit = document.junit().unwrap();
+            assert_eq!(junit.matches("<failure").count(), 1, "{junit}");
+            let suite = format!("campaign of seed 5: {}\"", part.word());
+            let suite = junit.split("<testsuite ").find(|text| text.contains(&suite)).expect("a suite");
+            let (before, message) = suite.split_once("<failure").expect("its failure");
+            assert!(before.trim_end().ends_with("<testcase name=\"terrain 1\">"), "{suite}");
+            assert!(
+                message.contains("\"1 of 1,000 rays are wrong or undecided\"")
+                    && message.contains("beam-0 3,1, range")
+            );
+            let (screen, place) = (document.screen(), format!("terrain 1 {}, beam-0 3,1", part.word()));
+            assert!(
+                screen.contains("1 of 8,000 rays are wrong or undecided") && screen.contains(&place),
+                "{screen}"
+            );
+        }
+    }
 }
