@@ -81,19 +81,7 @@ fn compared(
         let part = compare_with(exact, &mesh.triangles, &rays[from..to], sides, &piece(from, to), precision);
         match &mut whole {
             None => whole = Some(part),
-            Some(whole) => {
-                whole.verdicts.extend(part.verdicts);
-                whole.met += part.met;
-                for (tally, more) in whole.values.iter_mut().zip(part.values) {
-                    tally.compared += more.compared;
-                    let later = more.worst.map(|(worst, ray)| (worst, ray + from));
-                    let is_worse =
-                        |(worst, _): &(f64, usize)| tally.worst.is_none_or(|(before, _)| *worst > before);
-                    if let Some(later) = later.filter(is_worse) {
-                        tally.worst = Some(later);
-                    }
-                }
-            }
+            Some(whole) => whole.append(part),
         }
         from = to;
         if from == rays.len() {
