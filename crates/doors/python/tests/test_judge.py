@@ -97,6 +97,17 @@ def test_a_mistake_is_told(cube: Mesh, words: str, change: Any) -> None:
     assert f"Why: {judged.why}" in str(judged) and judge(cube, rays, answers, explain=False).why is None
 
 
+def test_a_mistake_that_breaks_right_rays_is_no_reason(cube: Mesh) -> None:
+    exact_t, hits = exact(cube)["t"], np.flatnonzero(cast(cube, RAYS).hit)
+    for changed, is_told in ((hits, True), (hits[::2], False)):
+        t = exact_t.copy()
+        t[changed] *= 2
+        judged = judge(cube, RAYS, {"t": t})
+        assert judged.wrong.tolist() == changed.tolist()
+        # Where every other hit is right, a factor would make it wrong.
+        assert ("2 times" in (judged.why or "")) == is_told and (judged.why is None) != is_told
+
+
 def test_a_mistake_of_the_question_is_told(cube: Mesh) -> None:
     endless = cast(cube, RAYS[:, 0:3], RAYS[:, 3:6], t_min=RAYS[:, 6])
     assert judge(cube, RAYS, endless).why == "100.0000 % agree if t_max is ignored"
@@ -147,6 +158,8 @@ def test_fronts_only_is_another_question(cube: Mesh) -> None:
         ({"t": np.zeros(400), "point": np.zeros((400, 2))}, r"point has the shape \(400, 2\); expected \(400, 3\)"),
         ({"face": np.full(400, 0.5)}, "face: cell 0 is 0.5; expected 0 or a larger whole number"),
         ({"face": np.full(400, -2)}, "face: cell 0 is -2"),
+        # 4294967295 is none, and what is beyond it is no face either.
+        ({"face": np.full(400, 4294967296)}, "face: cell 0 is 4294967296; expected 0 or a larger whole number"),
         ({"t": np.zeros(400, dtype=complex)}, "t is of type complex128"),
         (3, "answers are of type int"),
     ],

@@ -101,10 +101,12 @@ def test_texts_survive_as_toml() -> None:
         document = _toml.document({"x": text})
         tomllib = pytest.importorskip("tomllib")
         assert tomllib.loads(document)["x"] == text
-    for value in [True, 3, -0.1, 1e-300, 5e22, [1, [2.5]], {"a": {"b": "c"}}, np.float32(0.5), np.arange(3)]:
+    for value in [True, False, np.True_, 3, -0.1, 1e-300, 5e22, [1, [2.5]], {"a": {"b": "c"}}, np.float32(0.5), np.arange(3)]:
         tomllib = pytest.importorskip("tomllib")
         read = tomllib.loads(_toml.document({"x": value}))["x"]
         assert np.array_equal(read, value) if isinstance(value, np.ndarray) else read == value
+        # 1 is equal to True, and no truth value for a scene.
+        assert isinstance(read, bool) == isinstance(value, (bool, np.bool_))
 
 
 def test_pickles_are_the_same_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

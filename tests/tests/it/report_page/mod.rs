@@ -7,6 +7,7 @@ mod browser;
 mod candidates;
 mod cast;
 mod drives;
+mod functions;
 mod maps;
 mod rays;
 mod reach;
