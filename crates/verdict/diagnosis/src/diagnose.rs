@@ -173,3 +173,38 @@ fn together(found: Vec<(Vec<SensorId>, Finding)>, compared: usize) -> Vec<Reason
     reasons.sort_by(|a, b| a.sensors.cmp(&b.sensors));
     reasons
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tally::Tally;
+
+    #[test]
+    fn one_mistake_of_several_sensors_is_one_reason_with_the_sums_of_its_counts() {
+        let found = |sensor, mistake, base: u64| {
+            let tally = Tally { wrong: base, explained: base + 1, right: base + 2, broken: base + 3 };
+            let finding = Finding { mistakes: vec![mistake], corrections: Vec::new(), rules: None, tally };
+            (vec![sensor], finding)
+        };
+        let [beam, other] = [0, 1].map(SensorId::Beam);
+        let all = vec![
+            found(beam, Mistake::RowsReversed, 100),
+            found(SensorId::Camera, Mistake::NormalsReversed, 10),
+            found(other, Mistake::RowsReversed, 1000),
+        ];
+        let reasons = together(all, 3);
+        let told: Vec<_> = reasons
+            .iter()
+            .map(|reason| {
+                (reason.sensors.clone(), [reason.wrong, reason.explained, reason.right, reason.broken])
+            })
+            .collect();
+        assert_eq!(
+            told,
+            [(vec![SensorId::Camera], [10, 11, 12, 13]), (vec![beam, other], [1100, 1102, 1104, 1106])]
+        );
+        assert!(reasons.iter().all(|reason| !reason.is_everywhere));
+        let all = vec![found(beam, Mistake::RowsReversed, 1), found(other, Mistake::RowsReversed, 1)];
+        assert!(together(all.clone(), 2)[0].is_everywhere && !together(all, 3)[0].is_everywhere);
+    }
+}

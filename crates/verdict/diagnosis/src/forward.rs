@@ -200,3 +200,25 @@ fn beside(case: Case<'_>, place: Place, by: CutBy, is_above: bool) -> Option<Pla
         _ => Place { j: j.checked_add_signed(step).filter(|j| *j < height)?, ..place },
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_rounded_down_lies_below_the_truth() {
+        let is = |stated: f64, exact: f64, down: bool| is_rounded(Storage::F64, stated, exact, 0.125, down);
+        // 1.25 is a multiple of an eighth: down from anything up to 1.375, nearest up to a sixteenth away.
+        for (exact, is_down, is_nearest) in [
+            (1.25, true, true),
+            (1.3, true, true),
+            (1.37, true, false),
+            (1.38, false, false),
+            (1.2, false, true),
+            (1.1, false, false),
+        ] {
+            assert_eq!((is(1.25, exact, true), is(1.25, exact, false)), (is_down, is_nearest), "{exact}");
+        }
+        assert!(!is(1.26, 1.27, true) && !is(1.26, 1.26, false));
+    }
+}

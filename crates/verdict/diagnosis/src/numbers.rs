@@ -40,3 +40,24 @@ pub(crate) fn middle(numbers: &mut [f64], least: usize) -> Option<(f64, f64)> {
     let at = |quarter: usize| numbers[(numbers.len() - 1) * quarter / 4];
     Some((at(2), at(3) - at(1)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_middle_is_the_median_and_its_spread_that_of_the_inner_half() {
+        assert_eq!(middle(&mut [50.0, 1.0, 4.0, 2.0, 3.0], 5), Some((3.0, 2.0)));
+        assert_eq!(middle(&mut [1.0, 2.0], 3), None);
+        assert_eq!(middle(&mut [], 0), None);
+    }
+
+    #[test]
+    fn a_number_is_told_in_as_many_digits_as_are_known() {
+        assert_eq!(plainest(0.1264, 0.001), 0.126);
+        assert_eq!(plainest(0.1264, 0.004), 0.13);
+        assert_eq!(plainest(-2.9996, 0.0005), -3.0);
+        assert_eq!(plainest(0.1264, 0.0), 0.1264);
+        assert_eq!(plainest_between(0.126, 0.128), 0.127);
+    }
+}

@@ -38,3 +38,22 @@ impl Tally {
         self.wrong - self.explained + self.broken
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mistake_is_told_at_each_limit_and_not_beyond() {
+        // Of 100 wrong rays and 1000 right ones.
+        let is_enough = |wrong: u64, left: u64, broken: u64| {
+            let tally = Tally { wrong, explained: wrong - left, broken, right: 1000 };
+            tally.is_enough(MIN_WRONG_RAYS, [100, 1000])
+        };
+        assert!(is_enough(12, 0, 0) && !is_enough(11, 0, 0));
+        // One wrong ray in fifty may stay wrong.
+        assert!(is_enough(50, 1, 0) && !is_enough(49, 1, 0));
+        // As many right rays may break: one for fifty wrong ones.
+        assert!(is_enough(50, 0, 2) && !is_enough(50, 0, 3));
+    }
+}

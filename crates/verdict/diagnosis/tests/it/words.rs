@@ -185,3 +185,63 @@ fn each_reason_names_its_sensors_and_the_others_have_another_cause() {
     assert_eq!(found.of(second), Some(&found.reasons[1]));
     assert_eq!(found.of(SensorId::Beam(2)), None);
 }
+
+#[test]
+fn ways_and_units_are_told_truly() {
+    let ends = |start: &str, mistake: Mistake| {
+        let words = mistake.to_string();
+        assert!(words.starts_with(start), "{start}: {words}");
+    };
+    let shifted = |columns, rows| Mistake::Shifted { columns, rows };
+    ends("cells are shifted by 1 column right: ", shifted(1, 0));
+    ends("cells are shifted by 2 columns left: ", shifted(-2, 0));
+    ends("cells are shifted by 1 row up: ", shifted(0, -1));
+    ends("cells are shifted by 1 column left and 3 rows down: ", shifted(-1, 3));
+    let off = |offset| Mistake::Affine { of: Length::Range, factor: 1.0, offset };
+    ends("range.T is 0.25 m too long", off(0.25));
+    ends("range.T is 0.25 m too short", off(-0.25));
+    let line = |offset| Mistake::Affine { of: Length::Depth, factor: 2.0, offset };
+    ends("depth.Z is 2 times the true length plus 0.5 m", line(0.5));
+    ends("depth.Z is 2 times the true length less 0.5 m", line(-0.5));
+    for (unit, name) in [
+        (LengthUnit::Millimetres, "millimetres"),
+        (LengthUnit::Centimetres, "centimetres"),
+        (LengthUnit::Kilometres, "kilometres"),
+        (LengthUnit::Feet, "feet"),
+    ] {
+        ends(&format!("lengths are in {name}: "), Mistake::Unit(unit));
+    }
+    // Stored in metres, told in the units of a scene file; the stated number comes first.
+    ends("the focal length is 8 in place of 7.5 mm", Mistake::FocalLength { stated: 0.008, truth: 0.0075 });
+    ends("the beam's thickness is 5 in place of 20 mm", Mistake::Thickness { stated: 0.005, truth: 0.02 });
+    let pitch = Mistake::PixelPitch { stated: [4e-5, 3e-5], truth: [2e-5, 1e-5] };
+    ends("the pixel pitch is 40 x 30 in place of 20 x 10 micrometres", pitch);
+    let point = |stated, truth| Mistake::PrincipalPoint { stated, truth };
+    ends("cx is 1 in place of 2 px and cy is 3 in place of 4 px", point([1.0, 3.0], [2.0, 4.0]));
+    ends("cy is 3 in place of 4 px", point([1.0, 3.0], [1.0, 4.0]));
+    let turned = |about, degrees| Mistake::Turned { about, degrees };
+    for (about, more, less) in [
+        (Turn::Pitch, "looks 2 degrees too far down", "looks 2 degrees too far up"),
+        (Turn::Yaw, "looks 2 degrees too far to the right", "looks 2 degrees too far to the left"),
+        (Turn::Roll, "is rolled 2 degrees clockwise", "is rolled 2 degrees counter-clockwise"),
+    ] {
+        ends(&format!("the sensor {more}"), turned(about, 2.0));
+        ends(&format!("the sensor {less}"), turned(about, -2.0));
+    }
+}
+
+#[test]
+fn json_has_each_count_by_its_name() {
+    let reason = Reason {
+        sensors: vec![SensorId::Camera, SensorId::Beam(2)],
+        is_everywhere: false,
+        mistakes: vec![Mistake::RowsReversed],
+        wrong: 11,
+        explained: 12,
+        right: 13,
+        broken: 14,
+    };
+    let json = reason.to_json();
+    assert_eq!(["wrong", "explained", "right", "broken"].map(|key| &json[key]), [11, 12, 13, 14]);
+    assert_eq!(json["bundles"], serde_json::json!(["camera", "beam-2"]));
+}
