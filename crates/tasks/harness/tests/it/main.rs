@@ -2,6 +2,7 @@
 //! the library, and to its unit tests they would be values of another crate.
 
 mod formats;
+mod numbers;
 mod output;
 mod reports;
 mod summary_schema;
