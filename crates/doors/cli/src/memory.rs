@@ -218,6 +218,25 @@ mod tests {
     }
 
     #[test]
+    fn exactly_the_limit_is_enough_and_a_byte_more_is_not() {
+        GIVEN.store(1000, Ordering::Relaxed);
+        let is_allowed = [999, 1000, 1001].map(|needed| refuse_above("cast", needed, "1 ray").is_ok());
+        GIVEN.store(0, Ordering::Relaxed);
+        assert_eq!(is_allowed, [true, true, false]);
+    }
+
+    #[test]
+    fn pixels_are_the_camera_s_and_pencils_those_of_all_beams() {
+        let loaded = raypencil::io::load("pyramids", &raypencil::io::Overrides::default());
+        let scene = loaded.expect("the built-in scene").scene;
+        let cells = |sensor| scene.size(sensor).map(|(columns, rows)| u64::from(columns) * u64::from(rows));
+        let beams = (0..scene.beams().len()).filter_map(|beam| cells(SensorId::Beam(beam))).sum();
+        let camera = cells(SensorId::Camera).expect("a camera");
+        assert_ne!(camera, beams);
+        assert_eq!(counts(&scene), [scene.mesh().faces().len() as u64, camera, beams]);
+    }
+
+    #[test]
     fn the_machine_has_some_memory() {
         let bytes = of_machine().expect("a system that says it");
         assert!((64 << 20..1 << 50).contains(&bytes), "{bytes}");

@@ -325,3 +325,7 @@ pub(crate) fn ray(text: &str) -> Result<CastRay, String> {
         rays => Err(format!("{} rays; expected one", rays.len())),
     }
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/parsers.rs"]
+mod tests;

@@ -355,6 +355,29 @@ fn a_defect_is_reduced_and_reproduced() {
 }
 
 #[test]
+fn json_of_a_reduced_scene_tells_the_faces_before_and_after() {
+    let folder = folder();
+    let thick = "minimise small.toml --thickness 300 --with scanline-paper,tracer --class approximation -o out --json";
+    let output = raypencil(folder.path(), &thick.split(' ').collect::<Vec<_>>());
+    let report: serde_json::Value = serde_json::from_str(&text(&output.stdout)).unwrap();
+    assert_eq!(report["faces_before"], 224, "{report}");
+    let left = report["faces_after"].as_u64().unwrap();
+    assert!((1..224).contains(&left), "{report}");
+    let words = std::fs::read_to_string(folder.path().join("out/small-approximation.md")).unwrap();
+    assert!(words.contains(&format!("{left} face")), "{words}");
+}
+
+#[test]
+fn a_renderer_is_not_compared_with_itself() {
+    let folder = folder();
+    for with in ["scanline,scanline", "scanline,tracer,scanline", "tracer,scanline,referee,tracer"] {
+        let output = raypencil(folder.path(), &["validate", "small.toml", "--with", with, "-o", "out"]);
+        assert_trouble(&output, &[with, "is named twice; expected different renderers"]);
+    }
+    assert!(!folder.path().join("out").exists());
+}
+
+#[test]
 fn a_class_may_be_chosen_and_may_be_absent() {
     let folder = folder();
     // Sheets so thick that the paper's straight sides are visibly wrong.

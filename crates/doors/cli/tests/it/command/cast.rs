@@ -53,6 +53,35 @@ fn arrays_have_the_shape_of_the_rays() {
 }
 
 #[test]
+fn each_set_of_rays_decides_and_eight_rays_are_told_one_by_one() {
+    let folder = TempDir::new().unwrap();
+    let cube = data("cube.obj");
+    let set = |name: &str, x: i32| {
+        let grid = "grid = { columns = 8, rows = 6, width_deg = 30, height_deg = 20 }";
+        format!("[[rays]]\nname = \"{name}\"\n{grid}\nposition_m = [{x}, 0, 0]\n")
+    };
+    // From 40 m the cube lies behind: a set that hits nothing proves nothing, first or last.
+    for (name, sets, code) in [
+        ("one", [set("a", -4), set("b", -4)], 0),
+        ("first", [set("a", 40), set("b", -4)], 1),
+        ("last", [set("a", -4), set("b", 40)], 1),
+    ] {
+        let file = format!("{name}.toml");
+        fs::write(folder.path().join(&file), sets.concat()).unwrap();
+        screen(folder.path(), &["cast", &cube, &file, "--with", "tracer"], code);
+    }
+    for (count, is_told) in [(8, true), (9, false)] {
+        fs::write(folder.path().join("rays.csv"), "0.25,0.5,3,0,0,-1\n".repeat(count)).unwrap();
+        let told = screen(folder.path(), &["cast", &cube, "rays.csv", "--json"], 0);
+        let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+        assert_eq!(told["rays"].as_array().map(Vec::len), is_told.then_some(count), "{told}");
+        let shown = screen(folder.path(), &["cast", &cube, "rays.csv"], 0);
+        let expected = if is_told { count } else { 0 };
+        assert_eq!(shown.matches("from (0.25, 0.5, 3) along (0, 0, -1)").count(), expected, "{shown}");
+    }
+}
+
+#[test]
 fn one_ray_is_answered_on_the_screen_and_as_json() {
     let folder = TempDir::new().unwrap();
     let cube = data("cube.obj");

@@ -163,6 +163,19 @@ fn results_of_a_sweep_and_of_a_campaign_are_not_replaced_unasked() {
 }
 
 #[test]
+fn a_sweep_of_another_task_is_not_written_over_one() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    scene(folder, 1);
+    let sweep =
+        |task| ["sweep", "scene.toml", "--set", "camera.pitch_down_deg=30", "--do", task, "-o", "out"];
+    screen(folder, &sweep("render"), 0);
+    let words = ["results of a sweep of scene.toml, --do render", "expected another folder, or --force"];
+    assert_trouble(&raypencil(folder, &sweep("validate")), &words);
+    screen(folder, &sweep("render"), 0);
+}
+
+#[test]
 fn a_pack_is_not_mixed_with_maps() {
     let folder = TempDir::new().unwrap();
     let folder = folder.path();

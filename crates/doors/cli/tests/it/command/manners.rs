@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{command, raypencil, text};
+use super::{assert_trouble, command, raypencil, text};
 
 /// A file of the repository.
 fn data(name: &str) -> String {
@@ -76,5 +76,19 @@ fn colours_are_asked_for_and_refused() {
         assert!(!with(&[], None) && !with(&["--color", "auto"], None) && !with(&[], Some("1")));
         assert!(!with(&["--color=never"], None));
         assert!(with(&["--color", "always"], None) && with(&["--color=always"], Some("1")), "{wrong:?}");
+    }
+}
+
+#[test]
+fn as_many_threads_as_there_may_be_are_taken_from_the_environment() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let run = |threads: &str| {
+        command(folder.path(), &["completions", "bash"]).env("RAYON_NUM_THREADS", threads).output().unwrap()
+    };
+    for threads in ["", "0", "1", "1024"] {
+        assert_eq!(run(threads).status.code(), Some(0), "{threads:?}");
+    }
+    for threads in ["1025", "-1", "many"] {
+        assert_trouble(&run(threads), &[threads, "expected a number of threads from 1 to 1024"]);
     }
 }

@@ -78,7 +78,9 @@ fn a_sweep_leaves_a_table_and_charts() {
     for part in ["1/2", "2/2"] {
         let folder = format!("part-{}", &part[..1]);
         let words = [&words[..8], &["--shard", part, "-o", &folder]].concat();
-        assert!(screen(house, &words, 0).contains("join all parts with `raypencil sweep merge`"));
+        let said = screen(house, &words, 0);
+        assert!(said.contains("join all parts with `raypencil sweep merge`"), "{said}");
+        assert!(said.contains(&format!("part {} of 2 is finished", &part[..1])), "{said}");
     }
     let refused = raypencil(house, &["sweep", "merge", "part-2", "-o", "merged"]);
     assert_trouble(&refused, &["3 of 6 runs have no record", "run 0"]);

@@ -76,6 +76,24 @@ fn json_has_every_number() {
     assert_eq!(found["inverted"]["examples"][0]["face"], 3);
     assert_eq!(found["duplicates"]["count"], 1);
     assert_eq!((&found["open_edges"]["count"], &found["repaired"]), (&json!(0), &Value::Null));
+    // What a repair does, each by its own name.
+    let repaired = &inspected(folder.path(), &["faulty.glb", "--repair", "-o", "sound.glb"], 0)["repaired"];
+    let counts = [
+        ("zero_area_faces", 1),
+        ("duplicate_faces", 1),
+        ("duplicates_of_other_material", 1),
+        ("turned_faces", 1),
+        ("welded_vertices", 0),
+        ("unused_vertices", 1),
+    ];
+    for (key, count) in counts {
+        assert_eq!(repaired[key], count, "{key}: {repaired}");
+    }
+    // Two faces are lines, and one has two corners at one place.
+    let text = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 0 0 0\nv 0 2 0\nf 1 2 4\nf 1 2 3\nf 1 4 6\nf 1 5 4\n";
+    fs::write(folder.path().join("lines.obj"), text).unwrap();
+    let kinds = inspected(folder.path(), &["lines.obj"], 1)["zero_area_kinds"].clone();
+    assert_eq!(kinds, json!({ "repeated_vertex": 0, "coincident_vertices": 1, "collinear": 2 }));
 }
 
 #[test]
