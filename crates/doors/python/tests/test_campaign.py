@@ -210,3 +210,16 @@ def test_the_command_on_a_cluster_names_what_is_wrong(tmp_path: Path, command: C
     pytest.importorskip("distributed")
     done = command("campaign", "--dask", "tcp://127.0.0.1:1", code=2)
     assert "127.0.0.1:1" in done.stderr
+
+
+def test_all_units_of_work_are_in_some_shard(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from raypencil import _cluster
+
+    made: list[list[int]] = []
+    monkeypatch.setattr(_cluster, "_on_cluster", lambda client, name, wanted, *_: made.append(wanted))
+    for count, of_a_shard, shards in ((5, 2, 3), (4, 2, 2), (1, 8, 1)):
+        has = lambda index, shards, folder: index == 1  # noqa: E731
+        work = _cluster.Work("x", "runs", count, of_a_shard, lambda *_: None, has, lambda *_: {})
+        _cluster.run_shards(work, None, str(tmp_path), object(), 0, False)
+        # The second one is there already.
+        assert made.pop() == [index for index in range(shards) if index != 1]

@@ -185,3 +185,12 @@ def test_what_a_peer_answers_is_counted() -> None:
     assert peers.judged(Referee, question, Hits(None, late.t))[0] == peers.Counts(5, other=3, wrong=3)
     assert peers.judged(Referee, question, Hits(None, right.t))[0] == peers.Counts(5)
     assert (counts + counts).rays == 10 and counts.differing == 4
+
+
+def test_the_end_of_a_ray_belongs_to_it() -> None:
+    from raypencil.peers._peer import hits
+
+    rays = np.array([[0.0, 0, 0, 0, 0, 1, 0, 2]] * 3)
+    told = hits([4, 5, 6], [2.0, np.nextafter(2.0, 3), 1.0], rays)
+    assert told.hit.tolist() == [True, False, True] and told.t.tolist() == [2, np.inf, 1]
+    assert told.face is not None and told.face.tolist() == [4, -1, 6]

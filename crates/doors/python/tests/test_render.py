@@ -139,5 +139,11 @@ def test_results_can_be_pickled_and_shown(small: Scene) -> None:
     assert result._repr_html_().count("data:image/png;base64,iVBOR") == 3 and "48 x 36" in repr(result)
     # The flux of both beams in one picture.
     assert result.picture(name="flux").startswith(b"\x89PNG")
+    both = result.camera["flux"]
+    shown = [
+        type(result)({"camera": {"flux": np.array(flux)}}, "x", "", "W").picture(name="flux")
+        for flux in (both, both.sum(axis=0), both[0], both[1])
+    ]
+    assert shown[0] == shown[1] and shown[0] not in shown[2:]
     with pytest.raises(RaypencilError, match="point has 3 numbers"):
         result.picture(name="point")

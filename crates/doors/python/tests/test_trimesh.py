@@ -222,6 +222,17 @@ def test_suite_multiple_hits_begin_with_the_first() -> None:
     assert np.array_equal(place[begins], nearest) and np.bincount(index).max() == 6
 
 
+def test_an_edge_is_crossed_once_by_the_ray_of_a_point() -> None:
+    # A point's ray runs along (0.41, 0.29, 0.87): from the origin exactly through the middle of the first edge, which two faces share,
+    # and out through the inside of a face.
+    corners = np.array([[0.82, 0, 0.87], [0, 0.58, 0.87], [2, 2, 2], [0.5, 0.1, 3.2]])
+    faces = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
+    ours = RayMeshIntersector(raypencil.Mesh(corners, faces))
+    met = raypencil.cast((corners, faces), [0.0, 0, 0], [0.41, 0.29, 0.87], query="all").all
+    assert met is not None and met.t[:2].tolist() == [1, 1] and len(met.t) == 3
+    assert ours.contains_points([[0, 0, 0], corners.mean(axis=0), [3, 3, 3]]).tolist() == [False, True, False]
+
+
 def test_suite_contains_follows_a_mesh_that_moves() -> None:
     box = ours_on(trimesh.creation.box(extents=[2, 2, 2]))
     points = np.random.default_rng(3).uniform(-3, 3, (500, 3))
