@@ -61,7 +61,8 @@ fn names_are_unique_and_every_entry_is_complete() {
         assert!(fault.wrong.ends_with('.') && !fault.wrong.contains(['|', '\n']), "{name}: {}", fault.wrong);
         assert_eq!(fault.ask.first(), Some(of), "{name}: the crate's own tests are asked first");
         for asked in &fault.ask {
-            assert!(crates.contains_key(asked), "{name} asks {asked}");
+            // The tests of the whole workspace, which open pages in a browser, are those of no product.
+            assert!(asked == "tests" || crates.contains_key(asked), "{name} asks {asked}");
         }
         assert!(!fault.control || !fault.missed_at_first, "{name}: no test is written for a control");
     }
