@@ -1,6 +1,7 @@
 //! Errors of files: the file, the place in it, what was found and what was expected.
 
 use miette::Diagnostic;
+use std::borrow::Cow;
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -150,11 +151,65 @@ const MAX_MESSAGE_CHARS: usize = 400;
 
 /// A text of at most 400 characters as it is; the start and the end of a longer one.
 pub fn shortened(text: String) -> String {
+    within(&text, MAX_MESSAGE_CHARS).into_owned()
+}
+
+/// A text of at most so many characters; of a longer one the start and the end.
+fn within(text: &str, most: usize) -> Cow<'_, str> {
     let count = text.chars().count();
-    if count <= MAX_MESSAGE_CHARS {
-        return text;
+    if count <= most {
+        return text.into();
     }
-    let start: String = text.chars().take(MAX_MESSAGE_CHARS / 2).collect();
-    let end: String = text.chars().skip(count - MAX_MESSAGE_CHARS / 2).collect();
-    format!("{start} ... {end}")
+    let start: String = text.chars().take(most / 2).collect();
+    let end: String = text.chars().skip(count - most / 2).collect();
+    format!("{start} ... {end}").into()
+}
+
+/// Maximum length of a whole message, characters: about one screen of text.
+const MAX_WHOLE_CHARS: usize = 3000;
+
+/// A message as people can read it, whatever it repeats of an input: of a word of more than 400 characters, such as a number of
+/// 70,000 digits, the start and the end, and so of a message of more than 3000.
+///
+/// ```
+/// use raypencil_files::readable;
+///
+/// assert_eq!(readable("seed=12: expected less"), "seed=12: expected less");
+/// let long = readable(&format!("seed={}: expected less", "1".repeat(70_000))).into_owned();
+/// assert!(long.starts_with("seed=111") && long.ends_with("11: expected less") && long.len() < 500);
+/// ```
+pub fn readable(text: &str) -> Cow<'_, str> {
+    let is_long = |word: &str| word.len() > MAX_MESSAGE_CHARS && word.chars().count() > MAX_MESSAGE_CHARS;
+    if !text.split_whitespace().any(is_long) {
+        return within(text, MAX_WHOLE_CHARS);
+    }
+    let words: String = text
+        .split_inclusive(char::is_whitespace)
+        .map(|part| {
+            let word = part.trim_end();
+            within(word, MAX_MESSAGE_CHARS).into_owned() + &part[word.len()..]
+        })
+        .collect();
+    within(&words, MAX_WHOLE_CHARS).into_owned().into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_words_and_long_messages_keep_their_ends() {
+        let word = "x".repeat(400);
+        let text = format!("a\n{word}\t{word}\n  b");
+        assert_eq!(readable(&text), text);
+        let text = format!("a\n{word}y\t\u{e9}{word}\n  b");
+        let half = "x".repeat(200);
+        let cut = format!("a\n{half} ... {}y\t\u{e9}{} ... {half}\n  b", &half[1..], &half[1..]);
+        assert_eq!(readable(&text), cut);
+        let many = "0, ".repeat(70_000) + "end";
+        let shown = readable(&many);
+        assert!(shown.chars().count() == 3005 && shown.ends_with("0, end"), "{}", shown.len());
+        let whole = "0, ".repeat(1000);
+        assert_eq!(readable(&whole), whole);
+    }
 }

@@ -88,7 +88,7 @@ pub use channels::{
     read_channels, read_channels_as, read_listed_channels,
 };
 pub use disk::{TemporaryFolder, create_dir_all, remove_dir, remove_file};
-pub use error::{Fault, FileError, Problem, shortened};
+pub use error::{Fault, FileError, Problem, readable, shortened};
 pub use exr::{
     Attributes, ExrMap, ExrPart, Raster, exr_from_bytes, exr_parts_from_bytes, read_exr, read_exr_parts,
     write_exr,
@@ -108,7 +108,7 @@ pub use npy::{
     write_npy_numbers,
 };
 pub use npz::{npz_from_bytes, read_npz};
-pub use output_folder::{MIN_ABANDONED_AGE, OutputFolder, SharedFolder, remove_abandoned};
+pub use output_folder::{MIN_ABANDONED_AGE, OutputFolder, SharedFolder, begin_files, remove_abandoned};
 pub use pfm::{pfm_from_bytes, read_pfm, write_pfm};
 pub use placing::{claim, put_in_place};
 pub use png::{png_from_bytes, read_picture_png};

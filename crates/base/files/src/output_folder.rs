@@ -381,6 +381,22 @@ pub fn remove_abandoned(folder: &Path, min_age: Duration) {
     files_below(folder, &mut |part| remove_part(part, min_age));
 }
 
+/// Creates the folder of files that a command writes one by one, where it is missing, and removes what killed runs have left
+/// half-written in it. In this folder alone: it may be anybody's, and large. An empty path is the current folder.
+///
+/// # Errors
+/// [`FolderError::Create`].
+pub fn begin_files(folder: &Path) -> Result<(), FolderError> {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    create_folder(folder)?;
+    for entry in std::fs::read_dir(folder).into_iter().flatten().filter_map(io::Result::ok) {
+        if is_temporary(&entry.file_name()) {
+            remove_part(&entry.path(), MIN_ABANDONED_AGE);
+        }
+    }
+    Ok(())
+}
+
 /// Whether nothing was written to a file or folder for this time.
 fn is_older(part: &Path, age: Duration) -> bool {
     let written = part.symlink_metadata().and_then(|found| found.modified()).ok();

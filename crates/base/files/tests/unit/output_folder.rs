@@ -178,6 +178,23 @@ fn only_what_nobody_writes_any_more_is_abandoned() {
     remove_abandoned(&folder.path().join("nowhere"), Duration::ZERO);
 }
 
+#[cfg(unix)]
+#[test]
+fn what_a_killed_run_left_beside_single_files_is_removed_there_alone() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path().join("made");
+    begin_files(&folder).unwrap();
+    for name in [".raypencil-a.part", ".raypencil-b.part", "mine", "sub/.raypencil-c.part"] {
+        create_folder(folder.join(name).parent().unwrap()).unwrap();
+        std::fs::write(folder.join(name), "half").unwrap();
+    }
+    let writes = File::open(folder.join(".raypencil-b.part")).unwrap();
+    writes.lock().unwrap();
+    begin_files(&folder).unwrap();
+    assert_eq!(names(&folder), [".raypencil-b.part", "mine", "sub/.raypencil-c.part"]);
+    assert!(begin_files(&folder.join("mine")).is_err());
+}
+
 #[test]
 fn what_somebody_else_writes_meanwhile_is_not_the_run_s() {
     let folder = TempDir::new().unwrap();
