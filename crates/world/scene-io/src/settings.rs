@@ -154,7 +154,7 @@ pub(crate) struct ChangedText {
 /// Whether two keys mean the same value, or one of them a part of the other's; with `as_whole` whether the first means all of the
 /// second. A number that one of them has where the other has none chooses a table of those that the other means.
 fn meet(first: &[&str], second: &[&str], as_whole: bool) -> bool {
-    let is_number = |part: &str| part.parse::<usize>().is_ok();
+    let is_number = |part: &str| index_of(part).is_some();
     match (first, second) {
         ([], _) => true,
         (_, []) => !as_whole,
@@ -313,7 +313,17 @@ fn set_in_item(item: &mut Item, name: &str, rest: &[&str], setting: &Setting) ->
             let (chosen, rest) = chosen(tables.len(), name, rest, setting)?;
             for index in chosen {
                 let table = tables.get_mut(index).expect("an index below their number");
-                set_in_table(table, false, rest, setting)?;
+                match (rest, setting.toml()) {
+                    ([], Value::InlineTable(whole)) => *table = whole.into_table(),
+                    ([], value) => {
+                        let value = value.to_string();
+                        return Err(setting.refused(format!(
+                            "`{name}.{index}` is {}; expected a table of keys, {{ ... }}",
+                            value.trim()
+                        )));
+                    }
+                    _ => set_in_table(table, false, rest, setting)?,
+                }
             }
             Ok(())
         }
@@ -335,6 +345,11 @@ fn set_in_item(item: &mut Item, name: &str, rest: &[&str], setting: &Setting) ->
     }
 }
 
+/// The number of a table in its list, by a part of a key. One place has one name: `00` is none.
+fn index_of(part: &str) -> Option<usize> {
+    part.parse::<usize>().ok().filter(|index| index.to_string() == part)
+}
+
 /// Indices of the elements that a key means, and the rest of the key.
 fn chosen<'a>(
     count: usize,
@@ -342,7 +357,7 @@ fn chosen<'a>(
     rest: &'a [&'a str],
     setting: &Setting,
 ) -> Result<(Range<usize>, &'a [&'a str]), SceneIoError> {
-    let Some(Ok(index)) = rest.first().map(|part| part.parse::<usize>()) else { return Ok((0..count, rest)) };
+    let Some(index) = rest.first().and_then(|part| index_of(part)) else { return Ok((0..count, rest)) };
     if index >= count {
         return Err(setting.refused(format!(
             "`{name}.{index}` is not there; expected 0 to {}, for the scene has {count}",
@@ -368,7 +383,7 @@ fn find_in_table(table: &dyn TableLike, parts: &[&str], found: &mut dyn FnMut(Ra
 }
 
 fn find_in_item(item: &Item, rest: &[&str], found: &mut dyn FnMut(Range<usize>)) {
-    let index = rest.first().and_then(|part| part.parse::<usize>().ok());
+    let index = rest.first().and_then(|part| index_of(part));
     let is_chosen = |at: usize| index.is_none_or(|index| index == at);
     let rest = if index.is_some() { &rest[1..] } else { rest };
     match item {
