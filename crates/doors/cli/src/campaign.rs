@@ -10,7 +10,7 @@ use raypencil::campaign::{
     Campaign, CampaignProgress, Merged, OwnScenes, PartName, Shard, campaign_document, merge, run_shard,
     scene_of, write_campaign,
 };
-use raypencil::io::{MIN_ABANDONED_AGE, SharedFolder, create_folder, remove_abandoned, write_resolved};
+use raypencil::io::{MIN_ABANDONED_AGE, SharedFolder, begin_files, remove_abandoned, write_resolved};
 
 use crate::args::{self, CampaignCommand, CampaignMerge, CampaignReplay, CampaignRun};
 use crate::console::{Spinner, progress_bar, say};
@@ -155,7 +155,7 @@ fn replay(command: &CampaignReplay) -> Result<Outcome, Trouble> {
     let scene = scene_of(&campaign, command.terrain, command.part)?;
     let folder = &command.output;
     ask_replay(folder)?;
-    create_folder(folder)?;
+    begin_files(folder)?;
     let file = folder.join("scene.toml");
     write_resolved(&file, &scene, "terrain.glb")?;
     drop(spinner);

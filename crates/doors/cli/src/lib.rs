@@ -43,7 +43,7 @@ mod man;
 mod memory;
 mod minimise;
 mod outcome;
-mod overwriting;
+pub mod overwriting;
 mod pack;
 mod pages;
 mod parsers;
@@ -126,7 +126,8 @@ pub fn run_with(arguments: impl IntoIterator<Item = OsString>, registry: &Regist
 /// The exit code, which is 2 if the answer could not be written: then nobody has it.
 fn code_after_writing(code: u8) -> u8 {
     let Some(error) = console::failed_write() else { return code };
-    console::complain(&format!("Error: standard output: cannot write: {error}\n"));
+    let why = trouble::without_codes_of_the_system(&error.to_string());
+    console::complain(&format!("Error: standard output: cannot write: {why}\n"));
     2
 }
 

@@ -17,7 +17,8 @@ thread_local! {
 /// Maximum size of a file that says what a folder holds, bytes.
 const MAX_BYTES: u64 = 1 << 26;
 
-pub(crate) fn begin(force: bool) {
+/// Begins a command on this thread: whether results of something else may be replaced.
+pub fn begin(force: bool) {
     FORCE.set(force);
 }
 
@@ -37,7 +38,10 @@ fn results(command: &str, of: &str) -> String {
 
 /// Begins the output folder of a command's run on a scene, a mesh or a pack. `inputs` are the files and folders that the run reads: none of them
 /// may be an earlier run's in this folder.
-pub(crate) fn output_folder(
+///
+/// # Errors
+/// A folder that cannot be written, in which another run works, or with results of something else; an input in it that an earlier run made.
+pub fn output_folder(
     folder: &Path,
     command: &str,
     of: &str,
@@ -88,12 +92,18 @@ fn parts_in(folder: &Path) -> Option<Parts> {
 }
 
 /// Refuses a folder for a campaign that holds results of another command. Its records say of which campaign they are.
-pub(crate) fn ask_campaign(folder: &Path) -> Result<(), FolderError> {
+///
+/// # Errors
+/// [`FolderError::IsOfOther`].
+pub fn ask_campaign(folder: &Path) -> Result<(), FolderError> {
     ask_parts(folder, |parts| matches!(parts, Parts::Campaign))
 }
 
 /// The same for a sweep, whose plan says what it is of and what it does.
-pub(crate) fn ask_sweep(folder: &Path, of: &str, task: &str) -> Result<(), FolderError> {
+///
+/// # Errors
+/// [`FolderError::IsOfOther`].
+pub fn ask_sweep(folder: &Path, of: &str, task: &str) -> Result<(), FolderError> {
     let is_same = |held: &str, held_task: &str| subject(held) == subject(of) && held_task == task;
     ask_parts(folder, |parts| matches!(parts, Parts::Sweep(held, held_task) if is_same(held, held_task)))
 }
@@ -118,7 +128,10 @@ fn ask_parts(folder: &Path, is_same: impl Fn(&Parts) -> bool) -> Result<(), Fold
 }
 
 /// Refuses to write a pack over what it is made of, such as the scene of a pack.
-pub(crate) fn ask_pack_inputs(folder: &Path, inputs: &[&Path]) -> Result<(), FolderError> {
+///
+/// # Errors
+/// [`FolderError::IsInput`], with the first of them.
+pub fn ask_pack_inputs(folder: &Path, inputs: &[&Path]) -> Result<(), FolderError> {
     let Ok(whole) = folder.canonicalize() else { return Ok(()) };
     let is_within = |input: &&&Path| input.canonicalize().is_ok_and(|path| path.starts_with(&whole));
     let is_pack =
@@ -130,7 +143,8 @@ pub(crate) fn ask_pack_inputs(folder: &Path, inputs: &[&Path]) -> Result<(), Fol
 }
 
 /// What a pack is of.
-pub(crate) enum PackOf<'a> {
+#[derive(Debug, Clone, Copy)]
+pub enum PackOf<'a> {
     /// A scene, by its short name, with the pack's own version.
     Scene(&'a str, Option<&'a str>),
     /// Rays on a mesh.
@@ -142,7 +156,10 @@ pub(crate) enum PackOf<'a> {
 }
 
 /// Refuses a folder for a pack that holds another one, or results of a run. The same pack is written again.
-pub(crate) fn ask_pack(folder: &Path, of: PackOf) -> Result<(), FolderError> {
+///
+/// # Errors
+/// [`FolderError::IsOfOther`].
+pub fn ask_pack(folder: &Path, of: PackOf<'_>) -> Result<(), FolderError> {
     if is_forced() {
         return Ok(());
     }

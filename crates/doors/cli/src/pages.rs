@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use clap::Command;
-use raypencil::io::{create_folder, write_atomically};
+use raypencil::io::{begin_files, write_atomically};
 use serde_json::json;
 
 use crate::args::command_line;
@@ -20,7 +20,7 @@ pub(crate) fn write_pages(
     let mut whole = command_line().disable_help_subcommand(true);
     whole.build();
     let mut names = Vec::new();
-    create_folder(folder)?;
+    begin_files(folder)?;
     let mut commands = vec![&whole];
     while let Some(command) = commands.pop() {
         let (name, bytes) = page(command);

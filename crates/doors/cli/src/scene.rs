@@ -4,7 +4,7 @@ use std::path::Path;
 
 use raypencil::Progress as _;
 use raypencil::harness::{scene_json, scene_picture, scene_words};
-use raypencil::io::{FileError, SCENE_TEMPLATE, create_folder, load, write_atomically};
+use raypencil::io::{FileError, SCENE_TEMPLATE, begin_files, load, write_atomically};
 use raypencil::survey::warnings;
 
 use crate::args::{SceneCommand, SceneInit, SceneShow};
@@ -53,9 +53,7 @@ fn show(command: &SceneShow, json: bool) -> Result<Outcome, Trouble> {
             Format::Svg => drawing.svg().into_bytes(),
             Format::Png => drawing.png(),
         };
-        if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-            create_folder(folder)?;
-        }
+        path.parent().map_or(Ok(()), begin_files)?;
         write_atomically(path, |file| file.write_all(&bytes))?;
     }
     let vehicle = loaded.standing_vehicle();
@@ -85,9 +83,7 @@ fn init(command: &SceneInit, json: bool) -> Result<Outcome, Trouble> {
         let error = std::io::Error::other("it is there already; expected the name of a new file");
         return Err(FileError::io(file, "write", error).into());
     }
-    if let Some(folder) = file.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        create_folder(folder)?;
-    }
+    file.parent().map_or(Ok(()), begin_files)?;
     write_atomically(file, |out| out.write_all(SCENE_TEMPLATE.as_bytes()))?;
     let name = file.display().to_string();
     say(&match json {

@@ -1,9 +1,10 @@
 //! How an error is shown: with colours of our own, and without any that names or files bring along.
 
+use std::borrow::Cow;
 use std::fmt;
 
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, SourceCode};
-use raypencil::io::harmless;
+use raypencil::io::{harmless, readable};
 
 use crate::console::{in_colour, note};
 
@@ -42,7 +43,7 @@ impl Diagnostic for Shown<'_> {
 }
 
 /// A text without the numbers that the system gives its errors, as in "(os error 17)": the words before them say it.
-fn without_codes_of_the_system(text: &str) -> String {
+pub(crate) fn without_codes_of_the_system(text: &str) -> String {
     let mut parts = text.split(" (os error ");
     let mut plain = parts.next().unwrap_or_default().to_string();
     for part in parts {
@@ -57,8 +58,8 @@ fn without_codes_of_the_system(text: &str) -> String {
 /// The message of an error: what is wrong, where, what was expected; for a scene file with the line and a caret.
 pub(crate) fn rendered(error: &dyn Diagnostic) -> String {
     let shown = Shown {
-        words: without_codes_of_the_system(&harmless(&error.to_string())),
-        help: error.help().map(|help| harmless(&help.to_string()).into_owned()),
+        words: readable(&without_codes_of_the_system(&harmless(&error.to_string()))).into_owned(),
+        help: error.help().map(|help| readable(&harmless(&help.to_string())).into_owned()),
         error,
     };
     let theme = if in_colour() { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
@@ -72,11 +73,13 @@ pub(crate) fn rendered(error: &dyn Diagnostic) -> String {
 }
 
 /// Prints what clap says: a help text to standard output, an error to standard error. An error repeats the arguments, so one
-/// about words with codes of terminals is shown without any colour.
+/// about words with codes of terminals, or about long words, is shown without any colour.
 pub(crate) fn print_usage(error: &clap::Error, has_codes: bool) {
-    match has_codes {
-        true => crate::console::complain(&error.render().to_string()),
-        false => note(error.print()),
+    let plain = error.render().to_string();
+    match (error.use_stderr(), readable(&plain)) {
+        (true, Cow::Owned(shorter)) => crate::console::complain(&shorter),
+        (true, Cow::Borrowed(plain)) if has_codes => crate::console::complain(plain),
+        _ => note(error.print()),
     }
 }
 

@@ -6,11 +6,9 @@ use serde_json::Value;
 
 use crate::Trouble;
 
+/// Makes the folder of an output file, without what killed runs have left half-written there.
 pub(super) fn create_folder(output: &Path) -> Result<(), Trouble> {
-    match output.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => Ok(raypencil::io::create_folder(folder)?),
-        _ => Ok(()),
-    }
+    Ok(output.parent().map_or(Ok(()), raypencil::io::begin_files)?)
 }
 
 /// Whether a file's name ends in `.glb`.
