@@ -11,6 +11,7 @@ use raypencil::pack::{CheckError, Declarations, PackForm, Verification};
 use crate::array::Arrays;
 use crate::declared::declared;
 use crate::failure::Failure;
+use crate::folder::{Output, end};
 use crate::judge::{precision, verdict_arrays};
 use crate::watch::{Watch, watched};
 
@@ -25,7 +26,7 @@ struct Question {
     topic: Option<String>,
     message: Option<u64>,
     share: Verification,
-    output: Option<PathBuf>,
+    output: Output,
 }
 
 /// What became of it.
@@ -76,11 +77,13 @@ fn answer(question: &Question, watch: &Watch) -> Result<Answer, Failure> {
     let Question { pack, candidate, declared, frame, topic, message, share, output } = question;
     let choice = CloudChoice { topic: topic.as_deref(), message: *message };
     let cloud = CloudConventions { frame: frame.unwrap_or_default(), choice };
+    let begun = output.begin("check", &pack.to_string_lossy(), &[candidate])?;
     let helped = |error: CheckError| Failure::with_help(&error, error.help());
     let checked = check_any_pack(pack, candidate, (declared, cloud), *share, watch).map_err(helped)?;
-    if let Some(folder) = output {
+    if let Some(folder) = &output.folder {
         checked.write(folder)?;
     }
+    end(begun)?;
     let document = checked.document();
     let (kind, arrays, shape) = match &checked {
         CheckedPack::Sensors { .. } => ("sensors", Arrays::default(), Vec::new()),
@@ -102,7 +105,7 @@ fn answer(question: &Question, watch: &Watch) -> Result<Answer, Failure> {
 #[pyfunction]
 #[pyo3(signature = (
     pack, candidate, channels, scale, arithmetic=None, miss=None, no_faces=false, frame=None, topic=None, message=None,
-    verify=false, output=None, on_stage=None
+    verify=false, output=None, force=false, on_stage=None
 ))]
 #[allow(clippy::too_many_arguments, reason = "the arguments of a Python function by their names")]
 pub(crate) fn check<'py>(
@@ -119,6 +122,7 @@ pub(crate) fn check<'py>(
     message: Option<u64>,
     verify: bool,
     output: Option<PathBuf>,
+    force: bool,
     on_stage: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let answer = watched(py, on_stage, move |watch| {
@@ -137,6 +141,7 @@ pub(crate) fn check<'py>(
         let frame = frame.map(of_word).transpose()?;
         let named = declared(&channels, scale)?;
         let declared = Declarations { precision, miss, ignores_faces: no_faces, ..named };
+        let output = Output { folder: output, force };
         let question = Question { pack, candidate, declared, frame, topic, message, share, output };
         answer(&question, watch)
     })?;

@@ -11,6 +11,7 @@ use raypencil::pack::CheckError;
 
 use crate::declared::declared;
 use crate::failure::Failure;
+use crate::folder::{Output, end};
 use crate::judge::precision;
 use crate::scene::SceneCore;
 use crate::watch::watched;
@@ -19,7 +20,7 @@ use crate::watch::watched;
 #[pyfunction]
 #[pyo3(signature = (
     a, b, channels, scale, fail, fail_relative, fail_ulp, fail_percent, hard_fail, shared_only, scene=None,
-    arithmetic="f64", output=None, on_stage=None
+    arithmetic="f64", output=None, force=false, on_stage=None
 ))]
 pub(crate) fn diff(
     py: Python<'_>,
@@ -36,6 +37,7 @@ pub(crate) fn diff(
     scene: Option<&Bound<'_, SceneCore>>,
     arithmetic: &str,
     output: Option<PathBuf>,
+    force: bool,
     on_stage: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(bool, String, String)> {
     let precision = precision(arithmetic).map_err(|failure| failure.into_exception(py))?;
@@ -52,6 +54,8 @@ pub(crate) fn diff(
                 )));
             }
         }
+        let wished = Output { folder: output, force };
+        let begun = wished.begin("diff", &a.to_string_lossy(), &[&b])?;
         let [of_a, of_b] = read_sides([&a, &b], &declared(&channels, scale)?, watch)?;
         let thresholds = Thresholds { fail, fail_relative, fail_ulp, fail_percent, hard_fail, shared_only };
         watch.stage("comparing");
@@ -71,9 +75,10 @@ pub(crate) fn diff(
             let rulings = rule(&difference, &sides, &truth, [&of_a, &of_b]);
             difference = difference.with_rulings(rulings);
         }
-        if let Some(folder) = &output {
+        if let Some(folder) = &wished.folder {
             write_diff(&difference, &sides, folder, watch)?;
         }
+        end(begun)?;
         let document = diff_document(&difference, &sides);
         Ok((difference.passes(), document.screen(), document.json()))
     })

@@ -5,7 +5,7 @@ use std::io;
 
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
-use raypencil::io::SceneIoError;
+use raypencil::io::{SceneIoError, readable};
 
 /// Why a call failed.
 #[derive(Debug)]
@@ -34,7 +34,7 @@ impl Failure {
     /// An error, and what may help.
     pub(crate) fn with_help(error: &(dyn Error + 'static), help: Option<String>) -> Self {
         let text = help.map_or_else(|| error.to_string(), |help| format!("{error}\n  help: {help}"));
-        Self::Words { text, class: class_of(error) }
+        Self::Words { text: readable(&text).into_owned(), class: class_of(error) }
     }
 
     /// The exception.

@@ -6,6 +6,7 @@
 //!
 //! ```text
 //! failure        an error on its way to Python
+//! folder         output folders, by the rules of the commands
 //! watch          work on another thread, watched
 //! array          arrays that are made without Python and handed to it without a copy
 //! mesh, rays     triangles and rays from arrays
@@ -30,6 +31,7 @@ mod declared;
 mod diff;
 mod drive;
 mod failure;
+mod folder;
 mod ground;
 mod judge;
 mod maps;
@@ -59,6 +61,8 @@ mod _raypencil {
     use crate::diff::diff;
     #[pymodule_export]
     use crate::drive::DriveCore;
+    #[pymodule_export]
+    use crate::folder::SharedCore;
     #[pymodule_export]
     use crate::ground::generate_ground;
     #[pymodule_export]

@@ -8,6 +8,7 @@ use raypencil::harness::{Contender, RENDERER_NAMES, contender, write_maps, write
 use raypencil::{Fidelity, Progress, Request, Sampling};
 
 use crate::failure::Failure;
+use crate::folder::{Output, end};
 use crate::maps::{into_dict, sensor_arrays};
 use crate::scene::SceneCore;
 use crate::watch::watched;
@@ -64,7 +65,7 @@ pub(crate) fn renderer_words(names: &[String], switches: &[(String, String)], de
 
 /// Renders a scene: the arrays of each sensor. With `output` the files of the command are written, too.
 #[pyfunction]
-#[pyo3(signature = (scene, name, switches, jitter=None, output=None, on_stage=None))]
+#[pyo3(signature = (scene, name, switches, jitter=None, output=None, force=false, on_stage=None))]
 pub(crate) fn render<'py>(
     py: Python<'py>,
     scene: &SceneCore,
@@ -72,12 +73,15 @@ pub(crate) fn render<'py>(
     switches: Vec<(String, String)>,
     jitter: Option<u64>,
     output: Option<PathBuf>,
+    force: bool,
     on_stage: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let scene = scene.clone();
+    let output = Output { folder: output, force };
     let sensors = watched(py, on_stage, move |watch| {
         let contenders = contenders(std::slice::from_ref(&name), &switches)?;
         let renderer = &contenders[0].renderer;
+        let begun = output.begin("render", scene.of(), &[])?;
         watch.stage(&format!("{}: rendering", renderer.name()));
         let sampling = jitter.map_or(Sampling::Centres, |seed| Sampling::Jittered { seed });
         let rendered = renderer.render(&scene.loaded.scene, &Request { sampling, ..Request::EVERYTHING });
@@ -89,12 +93,13 @@ pub(crate) fn render<'py>(
                 renderer.name()
             )));
         }
-        if let Some(folder) = output {
+        if let Some(folder) = &output.folder {
             watch.stage(&format!("{}: writing", folder.display()));
             let subject = scene.subject("");
-            write_maps(&rendered, renderer.name(), &subject, sampling, &folder)?;
-            write_ray_sets(&subject, renderer.name(), &folder, watch)?;
+            write_maps(&rendered, renderer.name(), &subject, sampling, folder)?;
+            write_ray_sets(&subject, renderer.name(), folder, watch)?;
         }
+        end(begun)?;
         watch.stage("making arrays");
         Ok(sensor_arrays(&rendered))
     })?;

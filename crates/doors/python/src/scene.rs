@@ -20,6 +20,8 @@ pub(crate) struct SceneCore {
     pub(crate) loaded: Arc<LoadedScene>,
     /// The words that name it on a command line.
     words: String,
+    /// What results are of: name or path of the scene, or that it is a text.
+    of: String,
 }
 
 impl SceneCore {
@@ -34,6 +36,11 @@ impl SceneCore {
             sha256: source_sha256.clone(),
             file_facts: self.loaded.file_facts.clone(),
         }
+    }
+
+    /// What results in an output folder are of.
+    pub(crate) fn of(&self) -> &str {
+        &self.of
     }
 
     /// The words that name it on a command line.
@@ -84,7 +91,8 @@ impl SceneCore {
                 true => (load_text_with(&source, &name, &overrides)?, quoted(&format!("{name}.toml"))),
                 false => (load(&source, &overrides)?, quoted(&source)),
             };
-            Ok(Self { loaded: Arc::new(loaded), words: words + &of_settings.concat() })
+            let of = if is_text { format!("the text {name}") } else { source };
+            Ok(Self { loaded: Arc::new(loaded), words: words + &of_settings.concat(), of })
         })
     }
 

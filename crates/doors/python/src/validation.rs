@@ -11,6 +11,7 @@ use raypencil::pack::Declarations;
 
 use crate::declared::declared;
 use crate::failure::Failure;
+use crate::folder::{Output, end};
 use crate::maps::{into_dict, sensor_arrays};
 use crate::render::{contenders, renderer_words};
 use crate::scene::SceneCore;
@@ -62,7 +63,8 @@ impl ValidationCore {
 /// Validates a scene. With `output` the folder of the command is written, too.
 #[pyfunction]
 #[pyo3(signature = (
-    scene, names, switches, judge_all, candidates, channels, scale, allow_empty, output=None, on_stage=None
+    scene, names, switches, judge_all, candidates, channels, scale, allow_empty, output=None, force=false,
+    on_stage=None
 ))]
 #[allow(clippy::too_many_arguments, reason = "the arguments of a Python function by their names")]
 pub(crate) fn validate(
@@ -76,15 +78,18 @@ pub(crate) fn validate(
     scale: Option<f64>,
     allow_empty: bool,
     output: Option<PathBuf>,
+    force: bool,
     on_stage: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<ValidationCore> {
     let scene = scene.clone();
+    let wished = Output { folder: output, force };
     watched(py, on_stage, move |watch| {
         if names.len() < 2 {
             return Err(Failure::new(format!("with_: {names:?}; expected at least 2 renderers to compare")));
         }
         let contenders = contenders(&names, &switches)?;
         let subject = scene.subject(&renderer_words(&names, &switches, &["scanline", "tracer"]));
+        let begun = wished.begin("validate", scene.of(), &[])?;
         // Candidates first, so that an error in their files is reported before the rendering.
         let declared = declared(&channels, scale)?;
         if candidates.is_empty() && declared != Declarations::default() {
@@ -103,9 +108,10 @@ pub(crate) fn validate(
             watch.stage("evaluating candidates");
             validation.evaluate(candidates, watch);
         }
-        if let Some(folder) = &output {
+        if let Some(folder) = &wished.folder {
             write_validation(&validation, folder, watch)?;
         }
-        Ok(ValidationCore { validation, output })
+        end(begun)?;
+        Ok(ValidationCore { validation, output: wished.folder })
     })
 }

@@ -94,6 +94,7 @@ ONLY_COMMAND = {
 
 #: Parameters of a function that its command does not have under this name, and why.
 ONLY_PYTHON = {
+    "* force": "`--force`, which every command has",
     "* progress": "the command shows its stages on every terminal",
     "campaign client": "the cluster of `--dask`, which the package's command alone has",
     "campaign retries": "of `--dask`, which the package's command alone has",
@@ -295,7 +296,7 @@ def test_options_of_the_packages_own_command_are_the_commands(help_of: Help) -> 
         options = {option for action in command._actions for option in action.option_strings if option.startswith("--")}
         known = {word.word: word for word in words_of(help_of(name)) if word.word.startswith("--")}
         # On a cluster all parts are made.
-        assert options - {"--help", "--json", "--dask", "--shards"} == known.keys() - {"--shard"}
+        assert options - {"--help", "--json", "--force", "--dask", "--shards"} == known.keys() - {"--shard"}
         for action in command._actions:
             for option in known.keys() & set(action.option_strings):
                 assert known[option].default in (None, said(action.default)), option

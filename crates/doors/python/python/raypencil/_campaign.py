@@ -48,6 +48,7 @@ def campaign(
     seed: int = 1,
     *,
     output: str | os.PathLike[str],
+    force: bool = False,
     scenes: str | os.PathLike[str] | None = None,
     rig: str | os.PathLike[str] | None = None,
     candidate_command: str | None = None,
@@ -67,6 +68,7 @@ def campaign(
         terrains: their number.
         seed: of all random numbers.
         output: a folder for the records and the report. A campaign that was broken off there goes on.
+        force: begin in a folder that has results of another command; without it they are an error.
         scenes: a folder with scenes, terrains and elevation models of your own, in place of random ones.
         rig: a scene file whose vehicle, camera and beams stand on each terrain of ``scenes``.
         candidate_command: a program to hunt in: ``'my-tracer {pack} {out}'``; docs/guide/campaign.md.
@@ -98,5 +100,9 @@ def campaign(
     folder = os.fspath(output)
     task = functools.partial(_shard, arguments)
     work = Work("campaign", "terrains", core.terrains, TERRAINS_OF_A_SHARD, core.shard, core.has_result, task)
-    run_shards(work, shards, folder, client, retries, progress)
-    return CampaignResult(*core.merge([folder], folder))
+    shared = _raypencil.SharedCore(folder, force)
+    try:
+        run_shards(work, shards, folder, client, retries, progress)
+        return CampaignResult(*core.merge([folder], folder))
+    finally:
+        shared.release()

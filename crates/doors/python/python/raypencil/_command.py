@@ -30,6 +30,7 @@ def _parser() -> argparse.ArgumentParser:
         command.add_argument("--dask", required=True, metavar="ADDRESS", help="address or file of the scheduler")
         command.add_argument("--shards", type=int, metavar="N", help="number of tasks")
         command.add_argument("--json", action="store_true")
+        command.add_argument("--force", action="store_true")
         command.add_argument("-o", "--output", default=f"out/{name}", metavar="DIR")
         if name == "campaign":
             command.add_argument("--terrains", type=int, default=100)
@@ -67,7 +68,7 @@ def _on_cluster(words: list[str]) -> int:
         with Client(**at) as client:
             if given.command == "campaign":
                 found = campaign(
-                    given.terrains, given.seed, output=given.output, scenes=given.scenes, rig=given.rig,
+                    given.terrains, given.seed, output=given.output, force=given.force, scenes=given.scenes, rig=given.rig,
                     candidate_command=given.candidate_command, timeout=given.timeout, partial=given.partial,
                     arithmetic=given.arithmetic, parts=given.parts, max_faces=given.max_faces, shards=given.shards,
                     client=client, progress=True,
@@ -80,7 +81,8 @@ def _on_cluster(words: list[str]) -> int:
                 settings = dict(_raypencil.parse_axis(axis) for axis in given.set)
                 found = sweep(
                     given.scene, settings, runs=runs, do=given.do, with_=given.with_, as_printed=given.as_printed,
-                    charts=given.chart, output=given.output, shards=given.shards, client=client, progress=True,
+                    charts=given.chart, output=given.output, force=given.force, shards=given.shards, client=client,
+                    progress=True,
                 )  # fmt: skip
     except (RaypencilError, OSError) as error:
         print(f"  × {error}", file=sys.stderr)

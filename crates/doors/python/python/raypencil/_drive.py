@@ -232,6 +232,7 @@ def drive(
     record: Sequence[str] = (),
     output: str | os.PathLike[str] | None = None,
     stripes: ArrayLike | str | os.PathLike[str] | None = None,
+    force: bool = False,
     progress: Progress = False,
 ) -> Drive:
     """Drives the rover over a scene: an iterator over frames.
@@ -250,6 +251,7 @@ def drive(
         output: the folder of the command ``drive``. It is complete when the last frame was taken.
         stripes: stripes in place of the rover's own extraction: a folder with ``stripes.npy``, such as a recording; or an array
             (n, 5) of frame, step of a scan (-1: none), beam, column and row, as :attr:`Frame.stripes` of all frames together.
+        force: replace what ``output`` has of another command, or of something else; without it that is an error.
         progress: ``True``: a bar by tqdm, if that is installed. A function is called after each frame.
 
     Raises:
@@ -274,7 +276,7 @@ def drive(
     def begun(of_stripes: tuple[str, bool] | None) -> Drive:
         made = _raypencil.DriveCore(
             core, points, to_global, as_printed, list((rules or {}).items()), list(record), names,
-            list((switches or {}).items()), images, folder, of_stripes, None,
+            list((switches or {}).items()), images, folder, of_stripes, force, None,
         )  # fmt: skip
         return Drive(made, progress)
 

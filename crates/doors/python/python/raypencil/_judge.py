@@ -157,7 +157,7 @@ def _explained(
     with tempfile.TemporaryDirectory() as folder:
         pack, candidate = Path(folder, "pack"), Path(folder, "answers")
         candidate.mkdir()
-        _raypencil.pack_rays(core, np.ascontiguousarray(rays[some]), [len(some)], pack, fronts_only, None)
+        _raypencil.pack_rays(core, np.ascontiguousarray(rays[some]), [len(some)], pack, fronts_only)
         for name, array in stated.items():
             np.save(candidate / f"{name}.npy", array[some])
         why = _raypencil.check(pack, candidate, [], None, arithmetic)["why"]

@@ -31,6 +31,7 @@ def pack(
     no_bench: bool = False,
     pack_version: str | None = None,
     licence: str | None = None,
+    force: bool = False,
     progress: Progress = False,
 ) -> Path:
     """Writes the reference pack of a scene: its rays, and the answer to each, correctly rounded.
@@ -41,6 +42,7 @@ def pack(
         no_bench: leave the scene as it is. Without it small sensors are added whose rays lie at the limits of the contract.
         pack_version: of the pack itself, such as ``"1.0.0"``: for packs that are passed on.
         licence: of the pack itself, an SPDX expression such as ``"CC0-1.0"``.
+        force: replace another pack or other results that ``output`` has; without it they are an error.
         progress: see :func:`cast`.
 
     Returns:
@@ -50,12 +52,18 @@ def pack(
         RaypencilError: a version or a licence that is none.
     """
     with stages(progress) as on_stage:
-        _raypencil.pack_scene(as_scene(scene)._core, os.fspath(output), not no_bench, pack_version, licence, on_stage)
+        _raypencil.pack_scene(as_scene(scene)._core, os.fspath(output), not no_bench, pack_version, licence, force, on_stage)
     return Path(output)
 
 
 def pack_rays(
-    mesh: Any, rays: Any, output: PathLike, *, fronts_only: bool = False, progress: Progress = False
+    mesh: Any,
+    rays: Any,
+    output: PathLike,
+    *,
+    fronts_only: bool = False,
+    force: bool = False,
+    progress: Progress = False,
 ) -> list[str]:
     """Writes a pack of rays on a mesh: the question, and the exact answers with their margins.
 
@@ -66,6 +74,7 @@ def pack_rays(
             ``output``, by their names.
         output: the folder.
         fronts_only: rays pass through the backs of faces.
+        force: as for :func:`pack`.
         progress: see :func:`cast`.
 
     Returns:
@@ -74,11 +83,13 @@ def pack_rays(
     if isinstance(rays, (str, os.PathLike)):
         with stages(progress) as on_stage:
             return _raypencil.pack_ray_sets(
-                as_mesh(mesh)._core, os.fspath(rays), os.fspath(output), fronts_only, on_stage
+                as_mesh(mesh)._core, os.fspath(rays), os.fspath(output), fronts_only, force, on_stage
             )
     of_rays, shape = _arrays.given_rays(rays)
     with stages(progress) as on_stage:
-        return _raypencil.pack_rays(as_mesh(mesh)._core, of_rays, list(shape), os.fspath(output), fronts_only, on_stage)
+        return _raypencil.pack_rays(
+            as_mesh(mesh)._core, of_rays, list(shape), os.fspath(output), fronts_only, force, on_stage
+        )
 
 
 class CheckResult(Outcome):
@@ -145,6 +156,7 @@ def check(
     verify: bool = False,
     name: str = "answers",
     output: PathLike | None = None,
+    force: bool = False,
     progress: Progress = False,
 ) -> CheckResult:
     """Checks somebody's answers against a reference pack of any kind.
@@ -172,6 +184,7 @@ def check(
             by which a ray is wrong. The text says how many were.
         name: what messages call answers that are no folder.
         output: a folder for ``report.html``, ``junit.xml``, ``summary.md`` and ``check.json``.
+        force: replace what ``output`` has of another command, or of something else; without it that is an error.
         progress: see :func:`cast`.
 
     Raises:
@@ -183,7 +196,7 @@ def check(
         with stages(progress) as on_stage:
             answer = _raypencil.check(
                 os.fspath(pack), os.fspath(candidate), list((channels or {}).items()), scale, arithmetic, miss, no_faces,
-                frame, topic, message, verify, folder and os.fspath(folder), on_stage,
+                frame, topic, message, verify, folder and os.fspath(folder), force, on_stage,
             )
         return CheckResult(answer, folder)
 

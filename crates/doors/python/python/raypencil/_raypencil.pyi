@@ -86,6 +86,11 @@ class CampaignCore:
     def merge(self, folders: Sequence[_Path], output: _Path | None = None) -> tuple[bool, str, str]: ...
 
 @final
+class SharedCore:
+    def __new__(cls, folder: _Path, force: bool, sweep: tuple[str, str] | None = None) -> SharedCore: ...
+    def release(self) -> None: ...
+
+@final
 class SweepCore:
     def __new__(
         cls,
@@ -129,6 +134,7 @@ class DriveCore:
         images: bool,
         output: _Path | None = None,
         stripes: tuple[_Path, bool] | None = None,
+        force: bool = False,
         on_stage: _OnStage = None,
     ) -> DriveCore: ...
     @property
@@ -180,6 +186,7 @@ def render(
     switches: _Pairs,
     jitter: int | None = None,
     output: _Path | None = None,
+    force: bool = False,
     on_stage: _OnStage = None,
 ) -> dict[str, _Arrays]: ...
 def validate(
@@ -192,6 +199,7 @@ def validate(
     scale: float | None,
     allow_empty: bool,
     output: _Path | None = None,
+    force: bool = False,
     on_stage: _OnStage = None,
 ) -> ValidationCore: ...
 def pack_scene(
@@ -200,6 +208,7 @@ def pack_scene(
     bench: bool,
     version: str | None = None,
     licence: str | None = None,
+    force: bool = False,
     on_stage: _OnStage = None,
 ) -> None: ...
 def pack_rays(
@@ -208,6 +217,7 @@ def pack_rays(
     shape: Sequence[int],
     output: _Path,
     fronts_only: bool,
+    force: bool = False,
     on_stage: _OnStage = None,
 ) -> list[str]: ...
 def pack_ray_sets(
@@ -215,6 +225,7 @@ def pack_ray_sets(
     rays: _Path,
     output: _Path,
     fronts_only: bool,
+    force: bool = False,
     on_stage: _OnStage = None,
 ) -> list[str]: ...
 def check(
@@ -230,6 +241,7 @@ def check(
     message: int | None = None,
     verify: bool = False,
     output: _Path | None = None,
+    force: bool = False,
     on_stage: _OnStage = None,
 ) -> dict[str, Any]: ...
 def diff(
@@ -246,6 +258,7 @@ def diff(
     scene: SceneCore | None = None,
     arithmetic: str = "f64",
     output: _Path | None = None,
+    force: bool = False,
     on_stage: _OnStage = None,
 ) -> tuple[bool, str, str]: ...
 def read_recording(

@@ -202,6 +202,7 @@ def render(
     switches: Mapping[str, str] | None = None,
     jitter: int | None = None,
     output: str | os.PathLike[str] | None = None,
+    force: bool = False,
     progress: Progress = False,
 ) -> RenderResult:
     """Renders a scene: everything about every ray of the camera and the beams.
@@ -212,6 +213,7 @@ def render(
         switches: of the scanline renderer: ``{"facing": "paper"}``.
         jitter: a seed: one random ray in each pencil, not the central one. ``tracer`` and ``referee`` can do it.
         output: a folder for the files of the command ``render``.
+        force: replace what ``output`` has of another command, or of something else; without it that is an error.
         progress: see :func:`cast`.
 
     Sets of rays (``[[rays]]``) are answered by ``cast(scene, scene.ray_sets[name].rays)``.
@@ -222,5 +224,5 @@ def render(
     scene = as_scene(scene)
     folder = None if output is None else os.fspath(output)
     with stages(progress) as on_stage:
-        sensors = _raypencil.render(scene._core, with_, list((switches or {}).items()), jitter, folder, on_stage)
+        sensors = _raypencil.render(scene._core, with_, list((switches or {}).items()), jitter, folder, force, on_stage)
     return RenderResult(sensors, with_, scene.sha256, scene.flux_unit)

@@ -70,13 +70,12 @@ def _values(values: Any, key: str) -> list[str]:
 
 
 def _source(scene: Any, folder: str) -> tuple[str, list[tuple[str, str]]]:
-    """Name or path of a scene, and its settings. One without a file gets one."""
+    """Name or path of a scene, and its settings. One without a file is to have one in ``folder``."""
     if not isinstance(scene, Scene):
         return os.fspath(scene), []
     source = scene._source
     if scene._is_text:
         source = os.path.join(folder, f"{scene._name}.toml")
-        store({f"{scene._name}.toml": scene._source.encode()}, folder)
     return source, list(scene._settings)
 
 
@@ -90,6 +89,7 @@ def sweep(
     as_printed: bool = False,
     charts: Sequence[str] = (),
     output: str | os.PathLike[str],
+    force: bool = False,
     shards: int | None = None,
     client: Any = None,
     retries: int = 3,
@@ -109,6 +109,7 @@ def sweep(
         as_printed: with ``do="drive"``: as the paper prints it.
         charts: ``"RESULT,KEY"`` or ``"RESULT,KEY,KEY"``: charts to draw beside those of the main results.
         output: a folder for records, table and charts. A sweep that was broken off there goes on.
+        force: begin in a folder that has results of another command, or another sweep; without it they are an error.
         shards, client, retries, progress: as for :func:`campaign`.
 
     Returns:
@@ -128,12 +129,24 @@ def sweep(
     names = with_.split(",") if isinstance(with_, str) else list(with_)
     folder = os.fspath(output)
     source, of_scene = _source(scene, folder)
+    of_text = isinstance(scene, Scene) and scene._is_text
     swept = {key for keys, _ in axes for key in keys}
     # Of two settings of one key the last holds.
     axes = [([key], [[value]]) for key, value in dict(of_scene).items() if key not in swept] + axes
-    if Path(source).exists():
+    if of_text or Path(source).exists():
         source = os.path.abspath(source)
-    arguments = (source, axes, do, names, as_printed)
+    shared = _raypencil.SharedCore(folder, force, (source, do))
+    try:
+        if of_text:
+            store({os.path.basename(source): scene._source.encode()}, folder)
+        return _swept((source, axes, do, names, as_printed), folder, charts, (shards, client, retries, progress))
+    finally:
+        shared.release()
+
+
+def _swept(arguments: tuple[Any, ...], folder: str, charts: Sequence[str], how: tuple[Any, ...]) -> SweepResult:
+    """Makes the runs that are missing in the folder, in shards, and joins them."""
+    shards, client, retries, progress = how
     core = _raypencil.SweepCore(*arguments)
     task = partial(_part, arguments)
     work = Work("sweep", "runs", core.runs, RUNS_OF_A_SHARD, core.part, core.has_part, task)

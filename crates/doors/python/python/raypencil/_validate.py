@@ -89,6 +89,7 @@ def validate(
     scale: float | None = None,
     allow_empty: bool = False,
     output: str | os.PathLike[str] | None = None,
+    force: bool = False,
     progress: Progress = False,
 ) -> ValidationResult:
     """Renders a scene by two or more renderers and compares every ray. The referee rules on each that differs.
@@ -102,6 +103,7 @@ def validate(
         channels, scale: of the candidates' files, as for :func:`check`.
         allow_empty: whether a scene in which nothing is hit may pass.
         output: a folder for the report and the files of the command ``validate``.
+        force: replace what ``output`` has of another command, or of something else; without it that is an error.
         progress: see :func:`cast`.
 
     Raises:
@@ -118,7 +120,7 @@ def validate(
     with stages(progress) as on_stage:
         core = _raypencil.validate(
             scene._core, list(with_), of_switches, judge == "all", folders, list((channels or {}).items()), scale,
-            allow_empty, folder, on_stage,
+            allow_empty, folder, force, on_stage,
         )
     return ValidationResult(core, scene.sha256, scene.flux_unit)
 
@@ -150,6 +152,7 @@ def diff(
     scene: Any = None,
     arithmetic: Arithmetic = "f64",
     output: str | os.PathLike[str] | None = None,
+    force: bool = False,
     progress: Progress = False,
 ) -> DiffResult:
     """Compares two recordings: files or folders of EXR, NPY, NPZ, Zarr, PFM, PNG or TIFF, of any program.
@@ -169,6 +172,7 @@ def diff(
             allowed, and a channel fails only if a side is wrong.
         arithmetic: with ``scene``, the arithmetic in which both were computed.
         output: a folder for the report.
+        force: replace what ``output`` has of another command, or of something else; without it that is an error.
         progress: see :func:`cast`.
 
     Raises:
@@ -185,6 +189,6 @@ def diff(
     with stages(progress) as on_stage:
         passes, text, document = _raypencil.diff(
             os.fspath(a), os.fspath(b), list((channels or {}).items()), scale, fail, fail_relative, fail_ulp,
-            fail_percent, hard_fail, shared_only, core, arithmetic, folder, on_stage,
+            fail_percent, hard_fail, shared_only, core, arithmetic, folder, force, on_stage,
         )
     return DiffResult(passes, text, document)

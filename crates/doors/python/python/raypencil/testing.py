@@ -129,12 +129,17 @@ def assert_answers(
         if judged.passes:
             return judged
         # The same once more, as a pack: that leaves a report.
-        pack_rays(pack.mesh, pack.rays, folder / "pack")
+        pack_rays(pack.mesh, pack.rays, folder / "pack", force=True)
         arrays.pop("hit", None)
-        checked = check(folder / "pack", arrays, arithmetic, miss=miss, no_faces=no_faces, name=name, output=folder)
+        checked = check(
+            folder / "pack", arrays, arithmetic, miss=miss, no_faces=no_faces, name=name, output=folder, force=True
+        )
         text = checked.text if not checked.passes else judged.text
         raise AssertionError(f"{pack.name}: {pack.what}\n\n{text}\nreport: {folder / 'report.html'}")
-    checked = check(pack, answers, arithmetic, miss=miss, no_faces=no_faces, name=name, output=folder)
+    # A report takes the place of another one.
+    checked = check(
+        pack, answers, arithmetic, miss=miss, no_faces=no_faces, name=name, output=folder, force=True
+    )
     if checked.passes:
         return checked
     raise AssertionError(f"{pack}\n\n{checked.text}\nreport: {folder / 'report.html'}")

@@ -30,6 +30,7 @@ use raypencil::io::{DriveSetup, WaypointFrame};
 use raypencil::rover::{RigExtraction, StripeExtractor};
 
 use crate::failure::Failure;
+use crate::folder::{Output, end};
 use crate::render::{contenders, renderer_words};
 use crate::scene::SceneCore;
 use crate::watch::{PATIENCE, watched};
@@ -79,7 +80,7 @@ struct Wish {
     record: Vec<String>,
     names: Vec<String>,
     switches: Vec<(String, String)>,
-    output: Option<PathBuf>,
+    output: Output,
     /// The folder of stripes in place of the rover's own, and whether it is the user's and is named.
     stripes: Option<(PathBuf, bool)>,
 }
@@ -170,7 +171,7 @@ impl DriveCore {
     #[new]
     #[pyo3(signature = (
         scene, to, to_global, as_printed, rules, record, names, switches, images, output=None, stripes=None,
-        on_stage=None
+        force=false, on_stage=None
     ))]
     fn new(
         py: Python<'_>,
@@ -185,13 +186,18 @@ impl DriveCore {
         images: bool,
         output: Option<PathBuf>,
         stripes: Option<(PathBuf, bool)>,
+        force: bool,
         on_stage: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let output = Output { folder: output, force };
         let wish = Wish { to, to_global, as_printed, rules, record, names, switches, output, stripes };
         let scene = scene.clone();
         watched(py, on_stage, move |_| {
             let job = wish.job(&scene)?;
             let contents = wish.contents()?;
+            let named =
+                wish.stripes.as_ref().filter(|(_, is_named)| *is_named).map(|(folder, _)| folder.as_path());
+            let begun = wish.output.begin("drive", scene.of(), named.as_slice())?;
             let (job, planned) = (Arc::new(job), Arc::default());
             let is_signed = job.subtract_unlit;
             let (listener, seen) = sync_channel(AHEAD);
@@ -204,7 +210,7 @@ impl DriveCore {
             let tee = Tee::new(extraction, images, listener);
             let extras = DriveExtras {
                 extractor: Some(Arc::new(tee) as _),
-                record: wish.output.clone().map(|folder| (folder, contents)),
+                record: wish.output.folder.clone().map(|folder| (folder, contents)),
             };
             let progress = Planned(Arc::clone(&planned));
             let of_replay = Arc::clone(&job);
@@ -222,7 +228,9 @@ impl DriveCore {
                     let run = driven?;
                     replayed
                         .map_err(|_| Failure::new("an error of raypencil itself: the second rover"))??;
-                    finish(&job, &run, wish.output.as_ref())
+                    let ended = finish(&job, &run, wish.output.folder.as_ref())?;
+                    end(begun)?;
+                    Ok(ended)
                 })?;
             Ok(Self {
                 frames: Mutex::new(Some(frames)),
