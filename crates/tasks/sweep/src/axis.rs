@@ -83,8 +83,16 @@ impl Axis {
     pub fn read_list(path: &Path) -> Result<Self, SweepError> {
         let bytes = bytes::read_file(path, MAX_LIST_BYTES)
             .map_err(|error| raypencil_files::FileError::io(path, "read", error))?;
+        Self::list_from_bytes(&bytes, path)
+    }
+
+    /// The same from the contents of a file; `path` is its name in messages.
+    ///
+    /// # Errors
+    /// As [`Axis::read_list`], but for those of reading.
+    pub fn list_from_bytes(bytes: &[u8], path: &Path) -> Result<Self, SweepError> {
         let refused = |message: String| SweepError::List { file: path.display().to_string(), message };
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes.as_slice());
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes);
         let keys: Vec<String> =
             reader.headers().map_err(|error| refused(error.to_string()))?.iter().map(String::from).collect();
         if keys.len() > MAX_KEYS {

@@ -14,6 +14,7 @@
 //! formula    texts that a spreadsheet would compute
 //! results    what a run gives, as numbers with names
 //! record     a run's results in a file that tells whether it is whole
+//! records    files of a sweep from bytes, for tests
 //! work       makes one run
 //! run        makes the runs of a part; joins the records of all parts
 //! table      a row for each run, as CSV and Parquet
@@ -30,6 +31,7 @@ mod files;
 mod formula;
 mod plan;
 mod record;
+pub mod records;
 mod results;
 mod run;
 mod table;

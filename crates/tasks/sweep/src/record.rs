@@ -181,13 +181,24 @@ pub(crate) fn is_made(folder: &Path, sweep: &Sweep, run: u64, inputs: &SceneInpu
 
 /// Reads a record. `None`: it is not there, damaged, or of another run, and the run must be made again.
 pub(crate) fn read_record(folder: &Path, sweep: &Sweep, run: u64) -> Option<Record> {
-    let text = bytes::read_file(&record_file(folder, sweep, run), MAX_RECORD_BYTES).ok()?;
-    let sealed: Sealed = serde_json::from_slice(&text).ok()?;
+    from_bytes(&bytes::read_file(&record_file(folder, sweep, run), MAX_RECORD_BYTES).ok()?, sweep, run)
+}
+
+/// The same from the contents of a file.
+pub(crate) fn from_bytes(text: &[u8], sweep: &Sweep, run: u64) -> Option<Record> {
+    let sealed: Sealed = serde_json::from_slice(text).ok()?;
     let is_whole = sealed.format == FORMAT
         && sealed.run == sweep.identity(run)
         && sealed.sha256 == digest(&sealed.run, &sealed.record)
         && is_possible(&sealed.record.outcome);
     is_whole.then_some(sealed.record)
+}
+
+/// The text of a record with the digest of what it holds; `None` if it is no record of any run.
+pub(crate) fn sealed(text: &[u8]) -> Option<String> {
+    let mut sealed: Sealed = serde_json::from_slice(text).ok()?;
+    sealed.sha256 = digest(&sealed.run, &sealed.record);
+    serde_json::to_string(&sealed).ok()
 }
 
 #[cfg(test)]

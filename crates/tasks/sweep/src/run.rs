@@ -192,11 +192,16 @@ pub fn read_plan(folder: &Path) -> Result<Sweep, SweepError> {
     let file = folder.join(PLAN_FILE);
     let text =
         bytes::read_file(&file, MAX_PLAN_BYTES).map_err(|error| FileError::io(&file, "read", error))?;
+    plan_from_bytes(&text, &file)
+}
+
+/// The same from the contents of a file; `file` is its name in messages.
+pub(crate) fn plan_from_bytes(text: &[u8], file: &Path) -> Result<Sweep, SweepError> {
     let refused = |found: String| SweepError::Record {
         file: file.display().to_string(),
         found,
         expected: "the plan of a sweep, as `raypencil sweep` writes it".into(),
     };
-    let plan: Sweep = serde_json::from_slice(&text).map_err(|error| refused(error.to_string()))?;
+    let plan: Sweep = serde_json::from_slice(text).map_err(|error| refused(error.to_string()))?;
     plan.checked().map_err(|error| refused(error.to_string()))
 }
