@@ -64,8 +64,10 @@ fn table(names: &[String]) -> ExitCode {
     let mut is_whole = true;
     let is_asked = |name: &str| names.is_empty() || names.iter().any(|asked| asked == name);
     for walked in WALKED.iter().filter(|walked| is_asked(walked.name)) {
+        let start = std::time::Instant::now();
         let figures = walk(walked, &tree, &run, &|count| (0..count).collect());
         let words = format!("{} {}", walked.name, walked.words);
+        eprintln!("{words}: {:.0} s", start.elapsed().as_secs_f64());
         println!("| `{words}` | {} | {} | {} |", figures.operations, figures.states, figures.broken.len());
         for line in &figures.broken {
             is_whole = false;

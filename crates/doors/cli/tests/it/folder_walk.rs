@@ -27,37 +27,73 @@ pub enum Fault {
 pub struct Walked<'a> {
     /// Its name.
     pub name: &'static str,
-    /// Its words after that. `SCENE`, `MESH`, `RAYS` and `OUT` stand for paths.
+    /// Its words after that. `OUT`, at the start of a path too, and the names of [`INPUTS`] stand for paths.
     pub words: &'a str,
     /// The file that is written last, and says that all others are there.
     pub mark: Option<&'static str>,
     /// Folder whose files belong to no single run.
     pub shared: Option<&'static str>,
+    /// Whether a run goes on where an earlier one ended: then none comes before it here.
+    pub is_resumed: bool,
+}
+
+/// What stands for inputs in the words of a command, and their paths in the tree.
+const INPUTS: [(&str, &str); 6] = [
+    ("SCENE", "scene.toml"),
+    ("MESH", "mesh.obj"),
+    ("RAYS", "rays.csv"),
+    ("SETS", "rays.toml"),
+    ("PACK", "pack"),
+    ("MINE", "mine"),
+];
+
+/// A command whose run begins with the removal of an earlier one's mark.
+const fn marked(name: &'static str, words: &'static str, mark: &'static str) -> Walked<'static> {
+    Walked { name, words, mark: Some(mark), shared: None, is_resumed: false }
+}
+
+/// A command that writes files of the same names each time.
+const fn plain(name: &'static str, words: &'static str) -> Walked<'static> {
+    Walked { name, words, mark: None, shared: None, is_resumed: false }
 }
 
 /// The commands.
-pub const WALKED: [Walked<'static>; 6] = [
-    Walked { name: "validate", words: "SCENE -o OUT", mark: Some("summary.json"), shared: None },
+pub const WALKED: [Walked<'static>; 24] = [
+    marked("validate", "SCENE -o OUT", "summary.json"),
+    marked("render", "SCENE --with tracer --format exr-each -o OUT", "summary.json"),
+    marked("render", "SCENE --with tracer --format npz -o OUT", "summary.json"),
+    marked("render", "SCENE --with tracer --format zarr -o OUT", "summary.json"),
+    marked("drive", "SCENE --record png,points,maps -o OUT", "summary.json"),
+    marked("drive", "SCENE --record all -o OUT", "summary.json"),
     Walked {
-        name: "render",
-        words: "SCENE --with tracer --format exr-each -o OUT",
-        mark: Some("summary.json"),
-        shared: None,
-    },
-    Walked {
-        name: "drive",
-        words: "SCENE --record png,points,maps -o OUT",
-        mark: Some("summary.json"),
-        shared: None,
-    },
-    Walked {
-        name: "sweep",
-        words: "SCENE --set camera.pitch_down_deg=30,40 --do render -o OUT",
-        mark: None,
         shared: Some("runs"),
+        ..plain("sweep", "SCENE --set camera.pitch_down_deg=30,40 --do render -o OUT")
     },
-    Walked { name: "cast", words: "MESH RAYS --any -o OUT", mark: Some("summary.json"), shared: None },
-    Walked { name: "pack", words: "SCENE --no-bench -o OUT", mark: Some("manifest.json"), shared: None },
+    marked("cast", "MESH RAYS --any -o OUT", "summary.json"),
+    marked("cast", "MESH SETS -o OUT", "summary.json"),
+    marked("cast", "MESH SETS --scans 1 -o OUT", "summary.json"),
+    marked("pack", "SCENE --no-bench -o OUT", "manifest.json"),
+    marked("pack", "MESH --rays RAYS -o OUT", "raypack.json"),
+    marked("pack", "--input -o OUT", "input.json"),
+    marked("check", "PACK MINE -o OUT", "check.json"),
+    marked("diff", "PACK MINE -o OUT", "summary.json"),
+    plain(
+        "minimise",
+        "facets --with scanline-paper,tracer --class approximation --set camera.width_px=64 --set camera.height_px=48 \
+         --set camera.pixel_pitch_um=144 --set beam.columns=128 --set beam.rows=4 -o OUT",
+    ),
+    Walked { is_resumed: true, ..plain("campaign", "--terrains 1 --max-faces 200 -o OUT") },
+    plain("campaign", "replay --seed 1 --terrain 0 -o OUT"),
+    plain(
+        "terrain",
+        "generate --preset smooth --extent 4 --post-spacing 1 --fine-radius 0 -o OUT/ground.glb",
+    ),
+    plain("terrain", "import MESH -o OUT/ground.glb"),
+    plain("terrain", "inspect MESH --repair -o OUT/ground.glb"),
+    plain("scene", "show SCENE -o OUT/scene.svg"),
+    // What is there is refused.
+    Walked { is_resumed: true, ..plain("scene", "init OUT/new.toml") },
+    plain("reference", "-o OUT"),
 ];
 
 /// Somebody else's files, in the folder of the runs and beside it.
@@ -98,41 +134,69 @@ fn inputs(tree: &Path, phase: usize) {
     fs::write(tree.join("mesh.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
     let rays: String = (0..3 - phase).map(|ray| format!("0.{},0.1,1,0,0,-1,0,9\n", ray + 1)).collect();
     fs::write(tree.join("rays.csv"), format!("ox,oy,oz,dx,dy,dz,t_min,t_max\n{rays}")).unwrap();
+    let sets: String = (0..3 - phase)
+        .map(|set| {
+            format!(
+                "[[rays]]\nname = \"s{set}\"\nposition_m = [0.2, 0.2, 1]\npitch_down_deg = 90\n\
+                 spinning = {{ preset = \"vlp-16\", steps = 2 }}\n"
+            )
+        })
+        .collect();
+    fs::write(tree.join("rays.toml"), sets).unwrap();
+    let note = format!("{{\"format\": 1, \"program\": \"P {phase}\", \"arithmetic\": \"f64\"}}");
+    if tree.join("mine").is_dir() {
+        fs::write(tree.join("mine/candidate.json"), note).unwrap();
+    }
+}
+
+/// The files of the inputs that a command itself has made: a pack, and answers to it.
+fn made_inputs(walked: &Walked<'_>, tree: &Path, run: Run<'_>) -> Files {
+    if !walked.words.contains("MINE") {
+        return Files::new();
+    }
+    begin(tree, &Files::new());
+    inputs(tree, 0);
+    for (name, words) in
+        [("pack", "SCENE --no-bench -o OUT/../pack"), ("render", "SCENE --with scanline -o OUT/../mine")]
+    {
+        let (code, _) = run(tree, &words_of(name, words, tree), Fault::None);
+        assert_eq!(code, Some(0), "{name}");
+    }
+    let made = |folder: &str| {
+        let files = files(&tree.join(folder)).into_iter();
+        files.map(move |(name, bytes)| (Path::new(folder).join(name), bytes)).collect::<Vec<_>>()
+    };
+    [made("pack"), made("mine")].concat().into_iter().collect()
 }
 
 /// The tree anew, at the same place: reports name it.
-fn begin(tree: &Path) {
+fn begin(tree: &Path, made: &Files) {
     let _ = fs::remove_dir_all(tree);
-    for name in FOREIGN {
+    let foreign = FOREIGN.map(|name| (Path::new(name), b"mine".as_slice()));
+    let made = made.iter().map(|(name, bytes)| (name.as_path(), bytes.as_slice()));
+    for (name, bytes) in foreign.into_iter().chain(made) {
         let path = tree.join(name);
         fs::create_dir_all(path.parent().unwrap()).unwrap();
-        fs::write(path, "mine").unwrap();
+        fs::write(path, bytes).unwrap();
     }
 }
 
 /// The arguments of a command.
-fn words(walked: &Walked<'_>, tree: &Path) -> Vec<String> {
-    let path = |word: &str| match word {
-        "SCENE" => tree.join("scene.toml").display().to_string(),
-        "MESH" => tree.join("mesh.obj").display().to_string(),
-        "RAYS" => tree.join("rays.csv").display().to_string(),
-        "OUT" => tree.join("out").display().to_string(),
-        word => word.to_string(),
+fn words_of(name: &str, words: &str, tree: &Path) -> Vec<String> {
+    let path = |word: &str| {
+        let input = INPUTS.iter().find(|(input, _)| *input == word).map(|(_, name)| *name);
+        let output = word.strip_prefix("OUT").map(|rest| format!("out{rest}"));
+        let name = input.map(String::from).or(output);
+        name.map_or(word.to_string(), |name| tree.join(name).display().to_string())
     };
-    let given = walked.words.split(' ').map(path);
-    ["raypencil", walked.name]
-        .map(String::from)
-        .into_iter()
-        .chain(given)
-        .chain(["--threads=1".into()])
-        .collect()
+    let given = words.split(' ').map(path);
+    ["raypencil", name].map(String::from).into_iter().chain(given).chain(["--threads=1".into()]).collect()
 }
 
 /// The files in the folder of the runs. Of a list only its begin differs, which names the folder.
-fn files(tree: &Path) -> Files {
-    let out = tree.join("out");
+fn files(out: &Path) -> Files {
     let mut found = Files::new();
-    let mut folders = vec![out.clone()];
+    let mut folders = vec![out.to_path_buf()];
     while let Some(folder) = folders.pop() {
         for path in fs::read_dir(folder).into_iter().flatten().map(|entry| entry.unwrap().path()) {
             if path.is_dir() {
@@ -144,7 +208,7 @@ fn files(tree: &Path) -> Files {
                 // Digests of files that say how long something took differ, too.
                 bytes.clear();
             }
-            found.insert(path.strip_prefix(&out).unwrap().to_path_buf(), bytes);
+            found.insert(path.strip_prefix(out).unwrap().to_path_buf(), bytes);
         }
     }
     found
@@ -171,39 +235,48 @@ impl Alone {
 pub fn walk(walked: &Walked<'_>, tree: &Path, run: Run<'_>, choose: &dyn Fn(usize) -> Vec<usize>) -> Figures {
     let go = |phase: usize, fault: Fault| {
         inputs(tree, phase);
-        run(tree, &words(walked, tree), fault)
+        run(tree, &words_of(walked.name, walked.words, tree), fault)
+    };
+    let made = made_inputs(walked, tree, run);
+    // What was there before a run.
+    let earlier = || {
+        begin(tree, &made);
+        if !walked.is_resumed {
+            go(0, Fault::None);
+        }
     };
     let by_itself = |phase: usize| {
-        begin(tree);
+        begin(tree, &made);
         let (code, operations) = go(phase, Fault::None);
         assert!(code.is_some_and(|code| code < 2), "{} by itself: {code:?}", walked.name);
-        (files(tree), operations)
+        (files(&tree.join("out")), operations)
     };
     let (last, again) = (by_itself(2).0, by_itself(2).0);
     assert_eq!(last.keys().collect::<Vec<_>>(), again.keys().collect::<Vec<_>>());
     let varies = |name: &&PathBuf| again.get(*name) != last.get(*name);
     let varying: BTreeSet<PathBuf> = last.keys().filter(varies).cloned().collect();
-    let (later, earlier) = (by_itself(1).0, by_itself(0).0);
-    let alone = [earlier, later, last].map(|files| Alone { files, varying: varying.clone() });
-    // Over the earlier one, which is still there.
+    let (second, first) = (by_itself(1).0, by_itself(0).0);
+    let alone = [first, second, last].map(|files| Alone { files, varying: varying.clone() });
+    earlier();
     let operations = go(1, Fault::None).1;
     let mut figures = Figures { operations: operations.len(), ..Figures::default() };
     for number in choose(operations.len()) {
         for fault in [Fault::Fails(number), Fault::Dies(number)] {
-            begin(tree);
-            go(0, Fault::None);
+            earlier();
             let (code, _) = go(1, fault);
             figures.states += 1;
             let operation = operations[number].as_str();
             let mut broken = |what: String| {
-                figures.broken.push(format!("{}: {fault:?}, {operation}: {what}", walked.name));
+                figures
+                    .broken
+                    .push(format!("{} {}: {fault:?}, {operation}: {what}", walked.name, walked.words));
             };
             // What fails is told of, but where something could not be removed that disturbs nobody.
             let is_removal = operation.starts_with("Remove");
             if matches!(fault, Fault::Fails(_)) && code != Some(2) && !is_removal {
                 broken(format!("exit code {code:?}"));
             }
-            let found = files(tree);
+            let found = files(&tree.join("out"));
             if walked.mark.is_some_and(|mark| found.contains_key(Path::new(mark))) {
                 let is_locked = found.contains_key(Path::new(".raypencil-lock"));
                 let beside = |phase: usize| {
@@ -217,7 +290,7 @@ pub fn walk(walked: &Walked<'_>, tree: &Path, run: Run<'_>, choose: &dyn Fn(usiz
                 }
             }
             go(2, Fault::None);
-            let found = files(tree);
+            let found = files(&tree.join("out"));
             if let Some(other) = alone[2].first_other(&found) {
                 broken(format!("the next run has another {}", other.display()));
             }
