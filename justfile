@@ -158,13 +158,19 @@ planted-faults *AGAIN:
 malformed-inputs:
     cargo run --release -p raypencil-tests --features examples --example malformed_inputs > docs/evidence/malformed-inputs.md
 
+# Every malformed input, each in a process of its own: docs/evidence/hostile-inputs.md
+hostile-inputs:
+    cargo build --release -p raypencil-cli --bin raypencil
+    cargo run --release -p raypencil-cli --features examples --example hostile_inputs > out/hostile-inputs.md
+    mv out/hostile-inputs.md docs/evidence/hostile-inputs.md
+
 # Each operation of each command that writes a folder (or of COMMANDS) fails once, and ends the process once: the table of
 # docs/evidence/folder-faults.md, on the screen
 folder-faults *COMMANDS:
     cargo run --release -p raypencil-cli --features examples --example folder_faults -- {{ COMMANDS }}
 
 # Fuzzes a reader for SECONDS, starting from the malformed inputs: scene_toml, resolved_scene, glb, dem, exr, npy, pfm, stl,
-# obj, ply, cloud, trajectory, bag_poses, manifest, candidate; from good files: terrain, campaign, camera_info; from nothing: rays, ray_sets,
+# obj, ply, cloud, trajectory, bag_poses, manifest, candidate; from good files: terrain, campaign, sweep, settings, camera_info; from nothing: rays, ray_sets,
 # numbers. Needs a nightly
 # compiler and cargo-fuzz (cargo install cargo-fuzz --locked); fuzz/README.md
 fuzz TARGET SECONDS:

@@ -1,8 +1,10 @@
 //! A malformed input: its files, the command that reads them, and the words of the refusal.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::Path;
+use std::sync::Arc;
 
 /// The content of a path.
 #[derive(Debug, Clone)]
@@ -19,6 +21,8 @@ pub enum Item {
     Link(String),
     /// A copy of a whole committed pack, by name.
     Pack(&'static str),
+    /// A folder with these files.
+    Files(Arc<BTreeMap<String, Vec<u8>>>),
 }
 
 /// A malformed input.
@@ -28,7 +32,8 @@ pub struct Case {
     pub name: String,
     /// The defect, in a few words.
     pub what: &'static str,
-    /// The items to create, by path relative to the folder of the case; missing parent folders are created. Links out
+    /// The items to create, by path relative to the folder of the case; missing parent folders are created, and a later one takes the place of an
+    /// earlier one. Links out
     /// of the folder lead to files beside it.
     pub items: Vec<(String, Item)>,
     /// The command to run in the folder, word by word. `PACK` stands for the path of a good pack.
@@ -99,6 +104,13 @@ impl Case {
                 #[cfg(not(unix))]
                 Item::Link(_) => return Err(io::ErrorKind::Unsupported.into()),
                 Item::Pack(name) => copy(&packs.join(name), &path)?,
+                Item::Files(files) => {
+                    for (name, bytes) in files.iter() {
+                        let file = path.join(name);
+                        fs::create_dir_all(file.parent().unwrap_or(&path))?;
+                        fs::write(file, bytes)?;
+                    }
+                }
             }
         }
         Ok(())

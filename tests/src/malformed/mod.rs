@@ -95,8 +95,7 @@ pub fn table() -> String {
          nothing on standard output, and no file written. The readers have [fuzz targets](../../fuzz/README.md)\n\
          too. `just malformed-inputs` writes this page.\n\n\
          Inputs by rule are not listed: a good file in which one place after the other is cut, replaced, doubled or left\n\
-         out. `crates/doors/cli/tests/it/malformed/hostile.rs` has their number for meshes, rays, generated ground and records of\n\
-         campaigns, and runs each under the same limits.\n\n\
+         out. [hostile-inputs.md](hostile-inputs.md) has their number and what became of them, under the same limits.\n\n\
          | case | input | words of the message |\n| --- | --- | --- |\n",
     );
     for case in all().iter().chain(&tiffs()) {

@@ -5,12 +5,12 @@ use super::case::{Case, Item};
 const RUN: &str = "cast mesh.obj rays.toml -o out";
 
 /// A triangle.
-const MESH: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+pub(super) const MESH: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
 /// Written by `rosbags` (reference/rosbag/write_poses.py): three messages of each kind, without compression and check sums.
-const BAG: &[u8] = include_bytes!("../../../crates/base/rosbag/tests/data/poses.mcap");
+pub(super) const BAG: &[u8] = include_bytes!("../../../crates/base/rosbag/tests/data/poses.mcap");
 
-fn set(file: &str, more: &str) -> String {
+pub(super) fn set(file: &str, more: &str) -> String {
     format!(
         "[[rays]]\nname = \"a\"\ngrid = {{ preset = \"l515\", columns = 2, rows = 2 }}\nposes_file = \"{file}\"\n{more}"
     )

@@ -40,7 +40,7 @@ pub fn calibrations() -> Family {
             add(format!("{kind}-{name}"), bytes, kind == "rectified");
         }
     }
-    Family { cases, is_good }
+    Family { is_good, ..Family::of(cases) }
 }
 
 /// Other keys than those that the reader asks for are ignored: a message has many. So are, of a rectified camera, the numbers of

@@ -133,24 +133,29 @@ fn result(campaign: &Value, index: u64) -> Value {
     unsealed(campaign, json!({ "shard": { "index": index, "count": 2 }, "terrains": [record(index)] }))
 }
 
+/// The results of both halves of a campaign of two terrains, for a program that writes `campaign` into its own.
+pub(super) fn sealed_results(campaign: &Value) -> [String; 2] {
+    [0, 1].map(|index| sealed(result(campaign, index).to_string().as_bytes()).expect("a good file"))
+}
+
 /// Hostile results, for a program that writes `campaign` into its own: two terrains of any seed.
 pub fn campaign_records(campaign: &Value) -> Family {
-    let good = |index| sealed(result(campaign, index).to_string().as_bytes()).expect("a good file");
+    let [first, second] = sealed_results(campaign);
     let mut cases = Vec::new();
     let mut add = |name: String, bytes: Vec<u8>| {
         let (file, run) = ("b/shard-2-of-2.json", "campaign merge a b -o out");
         let mut case = Case::of_file(&format!("campaign-{name}"), "a changed record", run, file, bytes, "")
-            .file("a/shard-1-of-2.json", good(0));
+            .file("a/shard-1-of-2.json", first.clone());
         case.words = vec!["shard-2-of-2.json".into()];
         cases.push(case);
     };
     for (name, text) in changed(&result(campaign, 1)) {
         add(name, text.into_bytes());
     }
-    for (name, bytes) in cut_anywhere(good(1).as_bytes()).into_iter().step_by(32) {
+    for (name, bytes) in cut_anywhere(second.as_bytes()).into_iter().step_by(32) {
         add(name, bytes);
     }
-    Family { cases, is_good }
+    Family { is_good, ..Family::of(cases) }
 }
 
 /// Good files as seeds of a fuzz target: the record of terrain 3 of four, and the result of all of a campaign.

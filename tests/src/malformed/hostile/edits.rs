@@ -90,6 +90,22 @@ pub(super) fn cut_anywhere(bytes: &[u8]) -> Vec<(String, Vec<u8>)> {
     (0..bytes.len()).step_by(2).map(|at| (format!("cut-at-{at}"), bytes[..at].to_vec())).collect()
 }
 
+/// What stands in place of a byte: letters that end or begin something in a text, and bytes that no text has.
+const HOSTILE_BYTES: [u8; 6] = [0, 0xff, b'"', b'9', b'-', b'}'];
+
+/// The bytes as they are, and with each of them replaced by three others; which three alternates.
+pub(super) fn with_each_byte(bytes: &[u8]) -> Vec<(String, Vec<u8>)> {
+    let mut all = vec![("unchanged".to_string(), bytes.to_vec())];
+    for (at, &byte) in bytes.iter().enumerate() {
+        for &other in half_of(&HOSTILE_BYTES, at).filter(|other| **other != byte) {
+            let mut bytes = bytes.to_vec();
+            bytes[at] = other;
+            all.push((format!("byte-{at}-{other}"), bytes));
+        }
+    }
+    all
+}
+
 /// Hostile words that are good numbers of a file whose numbers have no range.
 pub(super) const NUMBERS: [&str; 5] = ["four", "half", "minus-one", "two-to-63", "two-to-64"];
 

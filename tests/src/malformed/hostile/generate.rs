@@ -88,7 +88,7 @@ pub fn generators() -> Family {
             cases.push(case);
         }
     }
-    Family { cases, is_good }
+    Family { is_good, ..Family::of(cases) }
 }
 
 /// Values in the range of their key or option.

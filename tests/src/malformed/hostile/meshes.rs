@@ -38,7 +38,7 @@ pub fn meshes() -> Family {
         add(name, "ply", vec![("unchanged".into(), binary_ply(is_big))]);
         add(name, "ply", cut_anywhere(&binary_ply(is_big)));
     }
-    Family { cases, is_good }
+    Family { is_good, ..Family::of(cases) }
 }
 
 /// The triangle as a binary STL.

@@ -1,7 +1,9 @@
 //! Hostile rays: CSV, NPY, and sets of rays in TOML.
 
 use super::Family;
-use super::edits::{NUMBERS, cut_anywhere, half_of, hostile_toml, replaced, with_each_word, word_of};
+use super::edits::{
+    NUMBERS, cut_anywhere, half_of, hostile_toml, replaced, with_each_byte, with_each_word, word_of,
+};
 use crate::malformed::case::Case;
 use crate::malformed::npy::array;
 
@@ -103,7 +105,22 @@ pub fn rays() -> Family {
             format!("{plain}{}", table.replace('@', "")).into_bytes(),
         );
     }
-    Family { cases, is_good }
+    Family { is_good, ..Family::of(cases) }
+}
+
+/// Each set with each byte changed. Which of them are good depends on the ranges of its numbers: a pattern of other numbers is one.
+pub fn patterns() -> Family {
+    let mut cases = Vec::new();
+    for (set, table) in SETS.iter().enumerate() {
+        let text = format!("[[rays]]\nname = \"a\"\n{table}").replace('@', "");
+        for (name, bytes) in with_each_byte(text.as_bytes()) {
+            let run = "cast mesh.obj rays.toml";
+            let name = format!("pattern-{set}-{name}");
+            let case = Case::of_file(&name, "a changed byte", run, "rays.toml", bytes, "");
+            cases.push(case.file("mesh.obj", MESH));
+        }
+    }
+    Family { is_good: |name| name.ends_with("unchanged"), open: &[0, 1], ..Family::of(cases) }
 }
 
 /// Sets whose other value is in its range, or which are whole where they are cut.
