@@ -41,12 +41,41 @@ pub(crate) fn each_record(
             LinearReadEvent::Record { data, opcode }
                 if matches!(opcode, op::SCHEMA | op::CHANNEL | op::MESSAGE) =>
             {
+                if !has_its_texts(opcode, data) {
+                    return Err(broken(McapError::UnexpectedEof));
+                }
                 take(mcap::parse_record(opcode, data).map_err(broken)?)?;
             }
             LinearReadEvent::Record { .. } => {}
         }
     }
     Ok(())
+}
+
+/// Whether the texts of a schema or of a channel are as long as they say: `mcap` makes room for what one claims, up to 4 GB, before it
+/// looks at what there is.
+fn has_its_texts(opcode: u8, data: &[u8]) -> bool {
+    let after_text = |bytes: &[u8]| -> Option<(usize, usize)> {
+        let length = u32::from_le_bytes(*bytes.first_chunk()?) as usize;
+        (length <= bytes.len() - 4).then_some((4, 4 + length))
+    };
+    // Numbers; name, encoding and contents. The metadata of a channel are texts again.
+    let numbers = match opcode {
+        op::SCHEMA => 2,
+        op::CHANNEL => 4,
+        _ => return true,
+    };
+    let Some(mut rest) = data.get(numbers..) else { return false };
+    let mut last: &[u8] = &[];
+    for _ in 0..3 {
+        let Some((begin, end)) = after_text(rest) else { return false };
+        (last, rest) = (&rest[begin..end], &rest[end..]);
+    }
+    while opcode == op::CHANNEL && !last.is_empty() {
+        let Some((_, end)) = after_text(last) else { return false };
+        last = &last[end..];
+    }
+    true
 }
 
 /// Decompressor of chunks with Zstandard.

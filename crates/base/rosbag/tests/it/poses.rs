@@ -159,3 +159,16 @@ fn cut_and_changed_bags_are_read_or_refused() {
         }
     }
 }
+
+#[test]
+fn texts_that_claim_more_than_their_record_has_are_refused_before_there_is_room_for_them() {
+    let whole = OF_ROSBAGS[0];
+    assert!(read(whole, Some("/odom"), None).is_ok());
+    // The last byte of a length of four: of names, encodings and metadata.
+    for at in [2628, 9977, 11877, 11973] {
+        let mut bytes = whole.to_vec();
+        bytes[at] = 0x7f;
+        let fault = read(&bytes, Some("/odom"), None).expect_err("a text of two thousand million bytes");
+        assert!(fault.contains("MCAP"), "{at}: {fault}");
+    }
+}
