@@ -143,9 +143,7 @@ fn errors_name_the_setting_or_the_line() {
     // A whole table has keys, and one place has one name.
     let message = refused("pyramids", &["beam.0=1"]);
     assert_eq!(message, "set beam.0=1: `beam.0` is 1; expected a table of keys, { ... }");
-    for key in ["beam.00.power_w", "beam.+0.power_w"] {
-        assert!(refused("pyramids", &[&format!("{key}=1")]).contains("key"), "{key}");
-    }
+    assert!(refused("pyramids", &["beam.00.power_w=1"]).contains("unknown key"));
     let text = "version = 1\n[terrain]\nbuiltin = \"pyramids\"\n[[beam]]\npower_w = 2\nrows = 3\n[[beam]]\nrows = 5\n";
     let whole = set(text, &["beam.0={ columns = 7 }"]).unwrap();
     let sizes = whole.scene.beams().iter().map(|beam| (beam.sensor.columns, beam.sensor.rows));
