@@ -8,6 +8,8 @@ use serde_json::{Value, json};
 use crate::job::DriveJob;
 use crate::labels::label_word;
 use crate::run::DriveRun;
+use crate::sector_truth::JudgedSector;
+use crate::true_rules::rule_words;
 
 /// The elements of the page that the explorer needs, with all that it shows.
 pub(crate) fn explorer(job: &DriveJob, run: &DriveRun) -> String {
@@ -57,7 +59,7 @@ fn drive_model(page: &mut ExplorerPage<'_>, scene: &Scene, job: &DriveJob, run: 
         .filter_map(|(index, frame)| {
             let (centre, sectors) = frame.obstacles.as_ref()?;
             let centre = [centre.x - origin.x, centre.y - origin.y];
-            let sectors: Vec<Value> = sectors.iter().map(|end| sector(end, scene)).collect();
+            let sectors: Vec<Value> = sectors.iter().map(|(end, judged)| sector(end, *judged, scene)).collect();
             Some(json!({ "frame": index, "centre": centre, "sectors": sectors }))
         })
         .collect();
@@ -100,15 +102,23 @@ fn drive_model(page: &mut ExplorerPage<'_>, scene: &Scene, job: &DriveJob, run: 
     })
 }
 
-/// A sector's end: direction (radians), radius (metres), point, label, and the reason in words.
-fn sector(end: &SectorEnd, scene: &Scene) -> Value {
+/// A sector's end: direction (radians), radius (metres), point, label, and the reason in words, with what is true.
+fn sector(end: &SectorEnd, judged: Option<JudgedSector>, scene: &Scene) -> Value {
     let origin = scene.mesh().origin();
     let point = [end.point.x - origin.x, end.point.y - origin.y];
     let missing = end.missing.map(|missing| [missing.place.x - origin.x, missing.place.y - origin.y]);
     json!({
         "direction": end.direction, "radius": end.radius, "point": point,
-        "label": label_word(end.label), "reason": reason(end), "missing": missing,
+        "label": label_word(end.label), "reason": reason(end) + &truth(judged), "missing": missing,
     })
+}
+
+/// What truly stops the vehicle, as a sentence that follows another; empty if nothing does.
+fn truth(judged: Option<JudgedSector>) -> String {
+    let Some(JudgedSector { true_radius: Some(radius), true_rule: Some(rule), .. }) = judged else {
+        return String::new();
+    };
+    format!(" In truth the vehicle cannot stand {radius:.2} m ahead: {}.", rule_words(rule))
 }
 
 /// Why testing stopped, as a sentence.

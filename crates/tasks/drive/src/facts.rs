@@ -90,6 +90,7 @@ pub(crate) fn facts(job: &DriveJob, run: &DriveRun) -> Vec<(&'static str, String
     }
     if run.truth.maps > 0 {
         facts.extend(run.truth.sentences().into_iter().map(|sentence| ("truth", sentence)));
+        facts.extend(run.truth.true_rules.sentence().map(|sentence| ("truth", sentence)));
         facts.push(("bound", run.upper_bound.sentence_of_bound()));
     }
     facts.extend(job.notes.iter().map(|note| ("note", note.clone())));

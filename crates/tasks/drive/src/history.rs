@@ -4,6 +4,8 @@ use glam::DVec2;
 use raypencil_rover::{DriveFrame, ElevationMap, ElevationSource, GridPoint, SectorEnd};
 use raypencil_scene::Pose;
 
+use crate::sector_truth::JudgedSector;
+
 /// Maximum number of frames that the time line has; of a longer drive it has every second one, every third, and so on.
 const MAX_FRAMES: u64 = 600;
 
@@ -33,8 +35,8 @@ pub(crate) struct HistoryFrame {
     pub first_change: usize,
     /// Whether a vertical scan was made in this frame.
     pub has_scan: bool,
-    /// Centre and sectors of the obstacle map, if the frame made one.
-    pub obstacles: Option<(DVec2, Vec<SectorEnd>)>,
+    /// Centre and sectors of the obstacle map, if the frame made one, and each sector against the truth.
+    pub obstacles: Option<(DVec2, Vec<(SectorEnd, Option<JudgedSector>)>)>,
 }
 
 /// The frames and changes of a drive.
@@ -70,7 +72,8 @@ impl DriveHistory {
     }
 
     /// Adds a frame and the map after it, if the time line has it. Frames with an obstacle map or a scan are always there.
-    pub(crate) fn add(&mut self, frame: &DriveFrame, map: &ElevationMap) {
+    /// `judged` has its sectors against the truth, or is empty.
+    pub(crate) fn add(&mut self, frame: &DriveFrame, judged: &[JudgedSector], map: &ElevationMap) {
         let is_marked = frame.obstacles.is_some() || frame.scan.is_some();
         if !frame.index.is_multiple_of(self.step) && !is_marked {
             return;
@@ -86,7 +89,11 @@ impl DriveHistory {
             believed: frame.believed,
             first_change,
             has_scan: frame.scan.is_some(),
-            obstacles: frame.obstacles.as_ref().map(|(map, _)| (map.centre, map.sectors.clone())),
+            obstacles: frame.obstacles.as_ref().map(|(map, _)| {
+                let sectors = map.sectors.iter().enumerate();
+                let sectors = sectors.map(|(sector, end)| (*end, judged.get(sector).copied()));
+                (map.centre, sectors.collect())
+            }),
         });
     }
 

@@ -106,6 +106,7 @@ fn in_keys(error: SceneError) -> SceneError {
             format!("drive.{name}_m")
         }
         ["drive", "grid", name @ ("first" | "step" | "last")] => format!("drive.grid_{name}_m"),
+        ["drive", "truth", "centre_of_mass", _] => "drive.true_centre_of_mass_m".into(),
         ["drive", "route", waypoint] if waypoint.starts_with("waypoints[") => {
             waypoint.replace("waypoints", "drive.waypoints_m")
         }

@@ -76,6 +76,7 @@ mod summary;
 mod sun;
 mod swept_ground;
 mod through_optics;
+mod true_rules;
 mod warnings;
 
 pub use differences::{Differences, FluxDifferences, StageDifferences};
@@ -94,6 +95,7 @@ pub use run::{DriveExtras, DriveProgress, DriveRun, drive, drive_with};
 pub use sector_truth::{Missed, NotFound, SectorTruth};
 pub use stripe_file::StripeFile;
 pub use through_optics::ThroughOptics;
+pub use true_rules::TrueRules;
 
 /// The README's example, compiled.
 #[cfg(doctest)]

@@ -241,7 +241,7 @@ pub fn drive_with(
         if let Some(recording) = &mut recording {
             recording.frame(job, frame, &judged, first.map()).map_err(FolderError::from)?;
         }
-        history.add(frame, first.map());
+        history.add(frame, &judged, first.map());
         edge_points += frame.measured.len() as u64;
         point_errors.add(&frame.measured, &frame.stance.pose(), first.ground());
         let room = MAX_EDGE_POINTS - points.len();

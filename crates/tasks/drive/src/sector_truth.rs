@@ -4,16 +4,17 @@
 //! `chassis`). It shares nothing with the rover's tests. Sector by sector, the rover's end is compared with the first
 //! place at which the vehicle cannot stand, both as distances from the vehicle where it truly is.
 
-use raypencil_chassis::{Chassis, GroundFaces, Obstruction, Passage, PassageLimits};
+use raypencil_chassis::{Chassis, GroundFaces, Obstruction, ObstructionKind, Passage, PassageLimits};
 use raypencil_report::count;
 use raypencil_rover::{
     DrivePlan, ElevationMap, GridPoint, Label, MapPoint, MapSize, MapWithShadows, Missing, MissingReason,
-    SectorEnd, SlopeLimits, Vehicle,
+    SectorEnd, TrueLimits, Vehicle,
 };
 use raypencil_scene::Pose;
 use raypencil_terrain::HeightIndex;
 
 use crate::swept_ground::{Swept, SweptGround};
+use crate::true_rules::TrueRules;
 
 /// Why an obstacle was called clear.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -74,6 +75,8 @@ pub(crate) struct JudgedSector {
     pub judgement: Judgement,
     /// First radius at which the vehicle cannot stand, metres. `None`: it can up to the last one, or the ground ends.
     pub true_radius: Option<f64>,
+    /// The rule that stops it there.
+    pub true_rule: Option<ObstructionKind>,
 }
 
 /// Counts of the sectors of obstacle maps against the truth. Each sector of each map counts once.
@@ -85,6 +88,8 @@ pub struct SectorTruth {
     pub sectors: u64,
     /// Sectors with an obstacle within their last radius.
     pub with_obstacle: u64,
+    /// The same by the rule that stops the vehicle there.
+    pub true_rules: TrueRules,
     /// Of these: testing stopped at an obstacle, not more than one step before or two after the true one.
     pub found: u64,
     /// Of these: called clear beyond the true obstacle by more than one step, though stripes swept it and nothing hid it.
@@ -118,9 +123,10 @@ pub(crate) struct TrueGround<'a> {
     pub swept: &'a SweptGround,
 }
 
-/// The vehicle as the mechanics know it.
-pub(crate) fn chassis(vehicle: &Vehicle) -> Chassis {
-    let Vehicle { wheelbase, track, wheel_radius, wheel_width, clearance, .. } = *vehicle;
+/// The vehicle as it truly is.
+fn chassis(vehicle: &Vehicle, truth: &TrueLimits) -> Chassis {
+    let Vehicle { wheelbase, track, wheel_radius, wheel_width, .. } = *vehicle;
+    let clearance = truth.clearance.unwrap_or(vehicle.clearance);
     Chassis { wheelbase, track, wheel_radius, wheel_width, clearance }
 }
 
@@ -160,11 +166,11 @@ impl SectorTruth {
                 self.add_sector(index as u32, end, first, ground, plan, global_from_vehicle, &mut || {
                     finds(&mut dense)
                 });
-            let true_radius = match first {
-                First::Obstacle { radius, .. } => Some(*radius),
-                First::Edge { .. } | First::None => None,
+            let (true_radius, true_rule) = match first {
+                First::Obstacle { radius, obstruction } => (Some(*radius), Some(obstruction.kind)),
+                First::Edge { .. } | First::None => (None, None),
             };
-            judged.push(JudgedSector { judgement, true_radius });
+            judged.push(JudgedSector { judgement, true_radius, true_rule });
         }
         judged
     }
@@ -192,6 +198,9 @@ impl SectorTruth {
             First::Edge { .. } | First::None => (f64::INFINITY, None),
         };
         self.with_obstacle += u64::from(obstruction.is_some());
+        if let Some(obstruction) = obstruction {
+            self.true_rules.add(obstruction.kind);
+        }
         // Nearer than the first radius nothing is tested: a sector that ends there has no clear way at all.
         let clear_way = last_clear.min(radius - step);
         if clear_way > plan.grid.radius(0) - 0.5 * step {
@@ -334,14 +343,22 @@ pub(crate) fn first_obstacles(
 
 /// First place of a sector at which the vehicle cannot stand.
 fn first_obstacle(sector: u32, faces: &GroundFaces, plan: &DrivePlan, global_from_vehicle: &Pose) -> First {
-    let DrivePlan { grid, vehicle, rules, .. } = plan;
-    let SlopeLimits { front, rear, length, .. } = rules.slopes;
-    let limits = PassageLimits { front, rear, length };
-    let (chassis, (_, unit)) = (chassis(vehicle), grid.direction(sector, global_from_vehicle));
+    let DrivePlan { grid, vehicle, rules, truth, .. } = plan;
+    let [front, rear, length] = truth.slopes(&rules.slopes);
+    let step = truth.step.unwrap_or(f64::INFINITY);
+    let limits = PassageLimits { front, rear, length, step, centre_of_mass: truth.centre_of_mass };
+    let (chassis, (_, unit)) = (chassis(vehicle, truth), grid.direction(sector, global_from_vehicle));
     let centre = global_from_vehicle.position.truncate();
     for index in 0..grid.radii() {
         let radius = grid.radius(index);
-        match chassis.passage(faces, centre + unit * radius, unit, &limits) {
+        let front = centre + unit * radius;
+        match chassis.passage(faces, front, unit, &limits) {
+            // From the radius before, and to the first one as far.
+            Passage::Clear if limits.step.is_finite() => {
+                if let Some(obstruction) = chassis.step(faces, front, unit, grid.step, limits.step) {
+                    return First::Obstacle { radius, obstruction };
+                }
+            }
             Passage::Clear => {}
             Passage::OffGround => return First::Edge { radius },
             Passage::Blocked(obstruction) => return First::Obstacle { radius, obstruction },

@@ -89,6 +89,7 @@ fn truth(truth: &SectorTruth, bound: &SectorTruth) -> Value {
         "obstacle_maps": truth.maps,
         "sectors": truth.sectors,
         "with_obstacle": truth.with_obstacle,
+        "true_rules": truth.true_rules.all().into_iter().map(|(word, sectors)| (word.to_string(), json!(sectors))).collect::<Map<_, _>>(),
         "found": truth.found,
         "passed": truth.passed(),
         "missed": {

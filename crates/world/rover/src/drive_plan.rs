@@ -13,6 +13,7 @@ use crate::rules::{MapRules, Rule, StartRule};
 use crate::scan::{ScanRule, Sweep};
 use crate::stripe::{Extraction, StripeLocation};
 use crate::traversability::TraversabilityRules;
+use crate::true_limits::TrueLimits;
 use crate::vehicle::Vehicle;
 
 /// Assignment of exposures to beams, which tells the stripes of the beams apart.
@@ -74,6 +75,8 @@ pub struct DrivePlan {
     pub obstacles_every: u64,
     /// Settings of the traversability tests.
     pub rules: TraversabilityRules,
+    /// What the vehicle can truly do, which the rover does not know.
+    pub truth: TrueLimits,
     /// Radial grid of the obstacle map.
     pub grid: RadialGrid,
     /// Thresholds of the navigator map.
@@ -168,6 +171,7 @@ impl DrivePlan {
         let vehicle = Vehicle::default();
         Self {
             rules: TraversabilityRules::for_vehicle(&vehicle),
+            truth: TrueLimits::default(),
             grid: RadialGrid::for_vehicle(&vehicle),
             vectors: VectorRules::for_vehicle(&vehicle),
             vehicle,
@@ -209,6 +213,7 @@ impl DrivePlan {
         self.sweep.validate(&name("sweep"))?;
         check_count(|| format!("{field}.obstacles_every"), self.obstacles_every, 1, u64::MAX)?;
         self.rules.validate(&name("rules"))?;
+        self.truth.validate(&name("truth"), &self.vehicle)?;
         self.grid.validate(&name("grid"))?;
         self.vectors.validate(&name("vectors"))
     }

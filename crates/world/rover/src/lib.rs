@@ -84,6 +84,7 @@ mod stripe_assignment;
 mod stripe_extractor;
 mod traversability;
 mod triangulation;
+mod true_limits;
 mod true_vehicle;
 mod vehicle;
 mod vehicle_plane;
@@ -116,6 +117,7 @@ pub use traversability::{
     TraversabilityTest, VehiclePart,
 };
 pub use triangulation::{SheetPlane, Triangulation, TriangulationTable};
+pub use true_limits::TrueLimits;
 pub use vehicle::{Attitude, Stance, Vehicle};
 
 /// The README's example, compiled.

@@ -7,6 +7,7 @@ use raypencil_rover::{DriveFrame, MissingReason, SectorEnd, TraversabilityTest, 
 
 use crate::labels::label_word;
 use crate::sector_truth::{JudgedSector, Judgement};
+use crate::true_rules::rule_word;
 
 /// The two files, as they grow.
 #[derive(Debug)]
@@ -19,7 +20,7 @@ impl SectorFiles {
     pub(super) fn create(folder: &Path) -> Result<Self, FileError> {
         let mut sectors = GrowingFile::create(folder.join("sectors.csv"))?;
         sectors.add(
-            "frame,sector,direction_rad,radius_m,x_m,y_m,label,reason,part,missing_x_m,missing_y_m,true_radius_m,judgement\n",
+            "frame,sector,direction_rad,radius_m,x_m,y_m,label,reason,part,missing_x_m,missing_y_m,true_radius_m,judgement,true_rule\n",
         )?;
         let mut vectors = GrowingFile::create(folder.join("vectors.csv"))?;
         vectors.add("frame,from_x_m,from_y_m,to_x_m,to_y_m,label\n")?;
@@ -33,7 +34,7 @@ impl SectorFiles {
         for (sector, end) in map.sectors.iter().enumerate() {
             let SectorEnd { direction, radius, point, label, .. } = *end;
             let (x, y, label, reason) = (point.x, point.y, label_word(label), reason(end));
-            let truth = judged.get(sector).map_or_else(|| ",".into(), truth);
+            let truth = judged.get(sector).map_or_else(|| ",,".into(), truth);
             let line = format!("{index},{sector},{direction},{radius},{x},{y},{label},{reason},{truth}\n");
             self.sectors.add(line)?;
         }
@@ -50,7 +51,8 @@ impl SectorFiles {
     }
 }
 
-/// The first radius at which the vehicle truly cannot stand, and what the sector is worth: two fields of the table.
+/// The first radius at which the vehicle truly cannot stand, what the sector is worth, and the rule that stops the vehicle: three
+/// fields of the table.
 fn truth(judged: &JudgedSector) -> String {
     let radius = judged.true_radius.map_or(String::new(), |radius| radius.to_string());
     let judgement = match judged.judgement {
@@ -61,7 +63,7 @@ fn truth(judged: &JudgedSector) -> String {
         Judgement::Clear => "clear",
         Judgement::OffGround => "off_ground",
     };
-    format!("{radius},{judgement}")
+    format!("{radius},{judgement},{}", judged.true_rule.map_or("", rule_word))
 }
 
 /// Why testing stopped: four fields of the table.

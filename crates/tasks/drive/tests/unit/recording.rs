@@ -117,12 +117,15 @@ fn every_file_has_what_the_frames_had() {
     for line in &sectors {
         let fields = fields(line);
         let has_reason = !fields[7].is_empty();
-        assert_eq!((fields.len(), has_reason), (13, fields[6] != "visibility"), "{line}");
+        assert_eq!((fields.len(), has_reason), (14, fields[6] != "visibility"), "{line}");
         // The truth: a radius of the grid, or none. No sector passes one here.
         let radius = (!fields[11].is_empty()).then(|| fields[11].parse::<f64>().unwrap());
         assert!(radius.is_none_or(|radius| (0.69..4.81).contains(&radius)), "{line}");
         assert!(["unknown", "clear", "off_ground"].contains(&&fields[12][..]), "{line}");
         assert_eq!(fields[9].is_empty(), fields[6] != "unknown", "{line}");
+        // The rule that stops the vehicle stands beside its radius; other rules than these are off by default.
+        let rules = ["front_slope", "rear_slope", "length_slope", "belly"];
+        assert_eq!(rules.contains(&&fields[13][..]), radius.is_some(), "{line}");
     }
     assert!(sectors.iter().any(|line| fields(line)[6] == "unknown"));
     // The snapshot of the last frame is the map at the end.

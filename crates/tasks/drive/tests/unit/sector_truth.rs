@@ -221,3 +221,47 @@ fn a_wall_is_seen_only_as_high_as_a_stripe_came() {
     swept.clear();
     assert_eq!(swept.at(top), Swept::Never);
 }
+
+/// Radius and rule of the first true obstacle before the wall of 0.75 m at 3 m, for a vehicle at (0, 0).
+fn stopped(truth: TrueLimits) -> Option<(f64, ObstructionKind)> {
+    let plan = DrivePlan { truth, ..plan() };
+    let pose = Attitude::default().at(DVec3::ZERO);
+    match first_obstacles(&GroundFaces::new(&step()), &plan, &pose).remove(0) {
+        First::Obstacle { radius, obstruction } => {
+            Some(((10.0 * radius).round() / 10.0, obstruction.kind))
+        }
+        First::Edge { .. } | First::None => None,
+    }
+}
+
+#[test]
+fn the_vehicles_limits_are_apart_from_the_rovers_own() {
+    // By default they are the rover's: 0.4 m of lift are more than 0.35 m.
+    assert_eq!(stopped(TrueLimits::default()), Some((2.7, ObstructionKind::LengthSlope)));
+    // A vehicle that may stand 10 to 1 climbs the wall, until its edge touches the belly: 0.35 m below the hub of the front
+    // wheel, where the hubs' plane has fallen by 0.75 d / 1.2 for d = 0.56 m behind it.
+    let climber = TrueLimits { length: Some(10.0), ..TrueLimits::default() };
+    assert_eq!(stopped(climber), Some((3.6, ObstructionKind::Belly)));
+    // 0.1 m lower the underside reaches it for 0.625 d = 0.35 - 0.1 sqrt(1 + 0.625^2), d = 0.371 m.
+    let low = TrueLimits { clearance: Some(0.25), ..climber };
+    assert_eq!(stopped(low), Some((3.4, ObstructionKind::Belly)));
+    // The wheels touch the wall 0.35 m before it, on the way from 2.6 to 2.7 m.
+    let steps = [0.74, 0.76].map(|step| stopped(TrueLimits { step: Some(step), ..climber }));
+    assert_eq!(steps, [Some((2.7, ObstructionKind::Step)), Some((3.6, ObstructionKind::Belly))]);
+    // 0.3 m before the wall the front wheels are lifted by 0.4 + sqrt(0.35^2 - 0.3^2) = 0.58 m: the vehicle rises by 0.484.
+    // It tips over if that is more than 0.6 / h: for h = 1.3 m, and not for 1.2 m. 0.2 m before it, it rises by 0.573.
+    let mass = |h| stopped(TrueLimits { centre_of_mass: Some(DVec3::new(0.0, 0.0, h)), ..climber });
+    assert_eq!(mass(1.3), Some((2.7, ObstructionKind::TipOver)));
+    assert_eq!(mass(1.2), Some((2.8, ObstructionKind::TipOver)));
+    // The rover's own limit does not move that of the vehicle once it has one.
+    let mut plan = DrivePlan { truth: climber, ..plan() };
+    plan.rules.slopes.length = 0.01;
+    assert_eq!(plan.truth.slopes(&plan.rules.slopes), [0.35, 0.35, 10.0]);
+}
+
+#[test]
+fn the_rule_of_a_true_obstacle_is_counted_and_told() {
+    let truth = counted(0.0, 2.7, Label::Obstacle, true);
+    assert_eq!(truth.true_rules, TrueRules { length_slope: 1, ..TrueRules::default() });
+    assert_eq!(counted(-3.0, 4.8, Label::Visibility, true).true_rules, TrueRules::default());
+}

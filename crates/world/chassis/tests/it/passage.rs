@@ -9,7 +9,8 @@ use super::shapes::Shape;
 const CHASSIS: Chassis =
     Chassis { wheelbase: 1.25, track: 1.0, wheel_radius: 0.35, wheel_width: 0.25, clearance: 0.35 };
 
-const LIMITS: PassageLimits = PassageLimits { front: 0.35, rear: 0.35, length: 0.25 };
+const LIMITS: PassageLimits =
+    PassageLimits { front: 0.35, rear: 0.35, length: 0.25, step: f64::INFINITY, centre_of_mass: None };
 
 /// Passage with the front axle at x, facing +x.
 fn at(shape: &Shape, x: f64) -> Passage {
@@ -126,7 +127,7 @@ fn wheels_in_a_trench_lower_the_belly_by_their_sagitta() {
 #[test]
 fn a_ramp_at_its_limit_passes_in_each_direction() {
     // 1/4 along, 0.375 across: exactly at the limit, then 2^-10 more; up, down, and both sides up.
-    let limits = PassageLimits { front: 0.375, rear: 0.375, length: 0.25 };
+    let limits = PassageLimits::slopes(0.375, 0.375, 0.25);
     let more = 1.0 / 1024.0;
     let pass = |p, q, forward: DVec2| {
         CHASSIS.passage(&Shape::plane(0.0, p, q).ground(), DVec2::new(0.3, 0.2), forward, &limits)
@@ -256,4 +257,110 @@ fn slopes_block_a_thousandth_above_their_limits_and_pass_a_thousandth_below() {
             assert_eq!(kind(on(0.3504)), kind_of, "{x} {y}");
         }
     }
+}
+
+/// Slopes of any size pass; the centre of mass is at this place of the vehicle frame.
+fn with_mass(x: f64, h: f64) -> PassageLimits {
+    let centre_of_mass = Some(DVec3::new(x, 0.0, h));
+    PassageLimits { centre_of_mass, ..PassageLimits::slopes(10.0, 10.0, 10.0) }
+}
+
+#[test]
+fn a_plane_tips_the_vehicle_over_at_half_its_base_over_the_height_of_its_mass() {
+    // 2.5 m high: L / (2 h) = 0.25 up and down, T / (2 h) = 0.2 on either side. A thousandth of a slope beside the limits.
+    let pass = |p: f64, q: f64, forward: DVec2| {
+        let ground = Shape::plane(0.0, p, q).ground();
+        CHASSIS.passage(&ground, DVec2::new(0.3, 0.2), forward, &with_mass(0.0, 2.5))
+    };
+    for (forward, side) in [(DVec2::X, 1.0), (DVec2::NEG_X, 1.0), (DVec2::X, -1.0)] {
+        assert_eq!(pass(side * 0.249, 0.0, forward), Passage::Clear, "{forward} {side}");
+        let tipped = obstruction(pass(side * 0.251, 0.0, forward));
+        assert_eq!((tipped.kind, tipped.points.len()), (ObstructionKind::TipOver, 4), "{forward} {side}");
+        assert_eq!(pass(0.0, side * 0.199, forward), Passage::Clear, "{forward} {side}");
+        assert_eq!(kind(pass(0.0, side * 0.201, forward)), ObstructionKind::TipOver, "{forward} {side}");
+    }
+    // Exactly at it the vertical meets the line through two wheels, and it stands.
+    assert_eq!(pass(0.25, 0.0, DVec2::X), Passage::Clear);
+}
+
+#[test]
+fn an_oblique_slope_tips_the_vehicle_over_its_nearer_line() {
+    // z = 0.2 x + 0.15 y. Heading x: p = 0.2, q = 0.15. The foot is h 0.2 sqrt(1.0625 / 1.04) = 0.202153 h behind and
+    // h 0.15 / sqrt(1.04) = 0.147087 h aside: at 0.625 m behind for h = 3.0917 m, at 0.5 m aside for 3.399 m.
+    // Heading y: p = 0.15, q = -0.2: h 0.2 / sqrt(1.0225) = 0.197788 h aside, 0.5 m for h = 2.5280 m.
+    let ground = Shape::plane(0.0, 0.2, 0.15).ground();
+    let pass = |forward, h: f64| CHASSIS.passage(&ground, DVec2::ZERO, forward, &with_mass(0.0, h));
+    assert_eq!(pass(DVec2::X, 3.091), Passage::Clear);
+    assert_eq!(kind(pass(DVec2::X, 3.092)), ObstructionKind::TipOver);
+    assert_eq!(pass(DVec2::Y, 2.527), Passage::Clear);
+    assert_eq!(kind(pass(DVec2::Y, 2.529)), ObstructionKind::TipOver);
+}
+
+#[test]
+fn a_mass_before_the_middle_tips_over_later_uphill() {
+    // 0.1 m ahead of the middle and 2.5 m high: behind at (0.625 + 0.1) / 2.5 = 0.29 uphill, ahead at 0.21 downhill.
+    let pass = |p: f64| {
+        let ground = Shape::plane(0.0, p, 0.0).ground();
+        CHASSIS.passage(&ground, DVec2::ZERO, DVec2::X, &with_mass(0.1, 2.5))
+    };
+    assert_eq!((pass(0.289), pass(-0.209)), (Passage::Clear, Passage::Clear));
+    assert_eq!(kind(pass(0.291)), ObstructionKind::TipOver);
+    assert_eq!(kind(pass(-0.211)), ObstructionKind::TipOver);
+}
+
+/// The step that a wheel has to climb on the last 0.1 m of its way to where the front axle is at x, facing +x.
+fn climbed(shape: &Shape, x: f64, height: f64) -> Option<Obstruction> {
+    CHASSIS.step(&shape.ground(), DVec2::new(x, 0.0), DVec2::X, 0.1, height)
+}
+
+#[test]
+fn a_step_a_hundredth_too_high_for_a_wheel_stops_it() {
+    // A wheel touches the edge of 0.2 m with its axle sqrt(0.35^2 - 0.15^2) = 0.3162 m before it: on the way from -0.35 m
+    // to -0.25 m. The slope along, 0.2 / 1.25, is far below its limit.
+    let step = Shape::step(0.2);
+    assert_eq!(at(&step, -0.25), Passage::Clear);
+    let stopped = climbed(&step, -0.25, 0.2 / 1.01).unwrap();
+    assert_eq!((stopped.kind, stopped.points.len()), (ObstructionKind::Step, 1));
+    let edge = stopped.points[0] - DVec3::new(0.0, 0.5, 0.2);
+    assert!(edge.length() < 1e-7, "{edge}");
+    assert_eq!(climbed(&step, -0.25, 0.2 / 0.99), None);
+    // Before it, and once the wheels are on it, there is nothing to climb.
+    assert_eq!((climbed(&step, -0.32, 0.19), climbed(&step, 0.0, 0.19)), (None, None));
+    // The rear wheels climb it 1.25 m later. Down there is none.
+    assert!(climbed(&step, 1.0, 0.2 / 1.01).is_some() && climbed(&step, 1.0, 0.2 / 0.99).is_none());
+    let down = CHASSIS.step(&step.ground(), DVec2::new(-0.1, 0.0), DVec2::NEG_X, 0.5, 0.01);
+    assert_eq!(down, None);
+    // A wall higher than the hub is met at its first touch, 0.35 m before it.
+    let wall = Shape::step(0.5);
+    assert!(climbed(&wall, -0.34, 0.5 / 1.01).is_some() && climbed(&wall, -0.34, 0.5 / 0.99).is_none());
+}
+
+#[test]
+fn a_stone_under_one_wheel_is_a_step() {
+    // Under the track of the right front wheel alone, 0.15 m high, from x = 1 m on; on the whole way there at once.
+    let stone = Shape::plane(0.0, 0.0, 0.0).stone((1.125, -0.5), (0.125, 0.0625), 0.15);
+    let way = |height| CHASSIS.step(&stone.ground(), DVec2::new(3.0, 0.0), DVec2::X, 2.5, height);
+    let point = way(0.15 / 1.01).unwrap().points[0];
+    assert!((point.x - 1.0).abs() < 1e-6 && (point.z - 0.15).abs() < 1e-7 && point.y < 0.0, "{point}");
+    assert_eq!(way(0.15 / 0.99), None);
+}
+
+#[test]
+fn a_slope_is_no_step_but_its_foot_is_a_small_one() {
+    // 1:4 for 5 m.
+    let slope = Shape::plane(0.0, 0.25, 0.0).ground();
+    assert_eq!(CHASSIS.step(&slope, DVec2::new(4.0, 0.0), DVec2::X, 5.0, 1e-3), None);
+    // Where a ramp of 1:1 begins, the point that carries a wheel jumps by R (1 - cos 45 degrees) = 0.10251 m. The ramp itself
+    // rises by 0.5 m.
+    let ramp = Shape::profile(&[(-16.0, 0.0), (0.0, 0.0), (0.5, 0.5), (16.0, 0.5)]).ground();
+    let way = |height| CHASSIS.step(&ramp, DVec2::new(1.0, 0.0), DVec2::X, 2.0, height);
+    assert!(way(0.1020).is_some());
+    assert_eq!(way(0.1030), None);
+}
+
+#[test]
+fn a_way_that_begins_without_ground_has_no_step_there() {
+    // The ground begins at -16 m with a wall that nobody climbs: the rear wheels come from beyond its edge.
+    let ground = Shape::plane(0.0, 0.0, 0.0).ground();
+    assert_eq!(CHASSIS.step(&ground, DVec2::new(-14.0, 0.0), DVec2::X, 2.0, 0.01), None);
 }

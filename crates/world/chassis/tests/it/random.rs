@@ -104,7 +104,7 @@ proptest! {
     ) {
         let shape = ground(&numbers, height);
         let chassis = Chassis { wheelbase: 0.8, track: 0.6, wheel_radius: 0.2, wheel_width: 0.15, clearance: 0.2 };
-        let limits = PassageLimits { front: 0.2, rear: 0.2, length: 0.15 };
+        let limits = PassageLimits::slopes(0.2, 0.2, 0.15);
         let (sin, cos) = libm::sincos(angle);
         let forward = DVec2::new(cos, sin);
         // The middle of the vehicle stays near the middle of the ground.

@@ -1,13 +1,13 @@
 //! Keys of `[drive]`, written straight into a [`DriveSetup`].
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use serde::Deserialize;
 use std::ops::RangeInclusive;
 use toml::Spanned;
 
 use raypencil_rover::{
     Detection, DrivePlan, ExposureMode, MAX_BLUR_SAMPLES, PointLookup, PositionFixes, RULE_NAMES, RadialGrid,
-    Rig, Rule, ScanRule, StripeLocation, TraversabilityRules, VectorRules, Vehicle,
+    Rig, Rule, ScanRule, StripeLocation, TraversabilityRules, TrueLimits, VectorRules, Vehicle,
 };
 use raypencil_sensor::{MARS_SEMI_MAJOR_AXIS_AU, PRESET_NAMES, SOLAR_IRRADIANCE_810_NM, Sunlight};
 
@@ -60,6 +60,12 @@ pub(crate) struct DriveKeys {
     slope_rear: Key<f64>,
     slope_length: Key<f64>,
     slope_closer: Key<f64>,
+    true_slope_front: Key<f64>,
+    true_slope_rear: Key<f64>,
+    true_slope_length: Key<f64>,
+    true_clearance_m: Key<f64>,
+    true_step_m: Key<f64>,
+    true_centre_of_mass_m: Key<Vec<f64>>,
     grid_first_m: Key<f64>,
     grid_last_m: Key<f64>,
     grid_step_m: Key<f64>,
@@ -138,6 +144,7 @@ impl Source<'_> {
         self.extraction(keys, &mut drive)?;
         self.vehicle_lengths(keys, &mut drive.plan.vehicle)?;
         self.maps(keys, &mut drive.plan)?;
+        self.true_limits(keys, &mut drive.plan.truth)?;
         self.scans(keys, &mut drive.plan)?;
         self.localisation(keys, &mut drive.plan)?;
         let mut kernel_digests = Vec::new();
@@ -341,6 +348,26 @@ impl Source<'_> {
         let vectors = &mut plan.vectors;
         self.number(&keys.vector_large_m, "drive.vector_large_m", &mut vectors.large, 0.0..=1e3, "metres")?;
         self.number(&keys.vector_small_m, "drive.vector_small_m", &mut vectors.small, 0.0..=1e3, "metres")
+    }
+
+    /// What the vehicle can truly do.
+    fn true_limits(&self, keys: &DriveKeys, truth: &mut TrueLimits) -> Result<(), SceneIoError> {
+        const SLOPE: RangeInclusive<f64> = 0.0..=1e3;
+        let limits = [
+            ("slope_front", &keys.true_slope_front, &mut truth.front, SLOPE, "of rise over distance"),
+            ("slope_rear", &keys.true_slope_rear, &mut truth.rear, SLOPE, "of rise over distance"),
+            ("slope_length", &keys.true_slope_length, &mut truth.length, SLOPE, "of rise over distance"),
+            ("clearance_m", &keys.true_clearance_m, &mut truth.clearance, VEHICLE_M, "metres"),
+            ("step_m", &keys.true_step_m, &mut truth.step, 1e-3..=1e2, "metres"),
+        ];
+        for (name, key, slot, range, unit) in limits {
+            *slot = self.optional(key, &format!("drive.true_{name}"), range, unit)?;
+        }
+        if let Some(mass) = &keys.true_centre_of_mass_m {
+            let mass = self.list(mass, "drive.true_centre_of_mass_m", &[3], -1e2..=1e2, "metres")?;
+            truth.centre_of_mass = Some(DVec3::from_slice(mass));
+        }
+        Ok(())
     }
 
     fn rules(&self, keys: &RuleKeys, plan: &mut DrivePlan) -> Result<(), SceneIoError> {

@@ -373,6 +373,16 @@ fn a_drive_names_its_keys() {
     for key in ["grid_first_m", "grid_last_m", "vector_large_m", "vector_small_m", "scan_inconsistency_m"] {
         bad(&format!("{key} = 2e3"), "2e3", &format!("`drive.{key}` is 2000; expected 0 to 1000 metres"));
     }
+    for key in ["front", "rear", "length"] {
+        bad(&format!("true_slope_{key} = -1"), "-1", &format!("`drive.true_slope_{key}` {slope}"));
+    }
+    bad("true_step_m = 0", "0", "`drive.true_step_m` is 0; expected 0.001 to 100 metres");
+    bad("true_clearance_m = 0", "0", "`drive.true_clearance_m` is 0; expected 0.01 to 100 metres");
+    bad(
+        "true_centre_of_mass_m = [0, 0]",
+        "[0, 0]",
+        "`drive.true_centre_of_mass_m` has 2 numbers; expected 3",
+    );
     bad("grid_step_m = 0", "0", "`drive.grid_step_m` is 0; expected 0.001 to 1000 metres");
     bad("grid_half_angle_deg = 181", "181", "`drive.grid_half_angle_deg` is 181; expected 0 to 180 degrees");
     let sun = "is 91; expected 0 to 90 degrees";

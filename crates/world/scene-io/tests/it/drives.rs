@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use raypencil_rover::{
     Detection, ExposureMode, ExposureTimes, Extraction, RadialGrid, SlopeLimits, StripeLocation,
-    TraversabilityRules, Vehicle,
+    TraversabilityRules, TrueLimits, Vehicle,
 };
 use raypencil_scene_io::{DriveSetup, LoadedScene, default_threshold, load_text};
 use raypencil_sensor::{ImageLength, ImageSensor, Psf, Speckle, preset};
@@ -217,6 +217,28 @@ fn keys_of_the_maps_and_scans_set_their_numbers() {
     near(plan.sweep.to, FRAC_PI_2);
     assert_eq!((plan.sweep.steps, plan.sweep.step_time), (9, 0.5));
     assert_eq!(drive("scans = false").plan.scans, None);
+}
+
+#[test]
+fn keys_of_the_truth_set_the_vehicles_limits_and_not_the_rovers() {
+    let keys = "true_slope_front = 0.5\ntrue_slope_rear = 0.6\ntrue_slope_length = 0.7\ntrue_clearance_m = 0.2\n\
+        true_step_m = 0.25\ntrue_centre_of_mass_m = [0.1, -0.2, 0.9]";
+    let plan = drive(keys).plan;
+    let expected = TrueLimits {
+        front: Some(0.5),
+        rear: Some(0.6),
+        length: Some(0.7),
+        clearance: Some(0.2),
+        step: Some(0.25),
+        centre_of_mass: Some(DVec3::new(0.1, -0.2, 0.9)),
+    };
+    assert_eq!(plan.truth, expected);
+    let default = drive("").plan;
+    assert_eq!((plan.rules, plan.vehicle), (default.rules, default.vehicle));
+    assert_eq!(default.truth, TrueLimits::default());
+    // The rover's own limits are the vehicle's, too, until it has others.
+    let own = drive("slope_rear = 0.5\ntrue_slope_length = 0.7").plan;
+    assert_eq!(own.truth.slopes(&own.rules.slopes), [0.35, 0.5, 0.7]);
 }
 
 #[test]
