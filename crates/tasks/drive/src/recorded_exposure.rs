@@ -72,7 +72,7 @@ impl RecordedExposure {
         let (scenes, of_lit) = &self.scenes;
         let background = sun.and_then(|sun| {
             let images: Vec<_> = scenes.iter().map(|scene| sun.background(job, scene)).collect();
-            Background::new(&images.iter().collect::<Vec<_>>(), *of_lit)
+            Background::new(&images.iter().collect::<Vec<_>>(), *of_lit, &job.plan.times)
         });
         job.expose(&flux, background.as_ref(), self.number, &mut None)
     }

@@ -149,7 +149,8 @@ impl<'a> RendererDrive<'a> {
             let times = &job.plan.times;
             let has_moved = exposure.step.is_none() && !times.is_at_once() && times.has_unlit;
             let of_lit = if has_moved { sunlit.len() / 2 } else { sunlit.len() };
-            let light = Background::new(&sunlit.iter().map(|(_, image)| image).collect::<Vec<_>>(), of_lit);
+            let backgrounds: Vec<_> = sunlit.iter().map(|(_, image)| image).collect();
+            let light = Background::new(&backgrounds, of_lit, times);
             let numbers = match job.is_flux_only() {
                 true => lit_mask(&flux, job.threshold_share),
                 false => job.expose(&flux, light.as_ref(), *exposures, pattern),

@@ -407,9 +407,10 @@ impl Drive {
         beam: Option<usize>,
     ) -> Result<Option<Image<f64>>, SceneError> {
         let DrivePlan { times, route, .. } = &self.plan;
+        let height = rig.camera.sensor.height;
         let middle = frame as f64 / route.frame_rate + times.lit(number);
         let mut images = Vec::new();
-        for moment in times.moments(middle) {
+        for moment in times.moments(middle, height) {
             let mut flux = self.flux(renderer, rig, &self.stance_at(moment)?)?;
             images.extend(match beam {
                 Some(beam) => Some(flux.swap_remove(beam)),
@@ -417,15 +418,11 @@ impl Drive {
             });
         }
         if times.has_unlit {
-            for moment in times.moments(middle + times.interval) {
+            for moment in times.moments(middle + times.interval, height) {
                 renderer.render(&self.scene(rig, &self.stance_at(moment)?)?, &Request::NOTHING);
             }
         }
-        let share = 1.0 / f64::from(times.samples);
-        Ok(sum(images).map(|mut light| {
-            light.cells_mut().iter_mut().for_each(|pixel| *pixel *= share);
-            light
-        }))
+        Ok(times.exposed(&images))
     }
 
     /// How the vehicle stands at a time of the route, seconds.

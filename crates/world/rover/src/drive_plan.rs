@@ -204,7 +204,8 @@ impl DrivePlan {
             ExposureMode::InTurn => self.rig.beams.len(),
             ExposureMode::Together => 1,
         };
-        self.times.validate(&name("times"), lit, 1.0 / self.route.frame_rate)?;
+        let height = self.rig.camera.sensor.height;
+        self.times.validate(&name("times"), lit, 1.0 / self.route.frame_rate, height)?;
         self.errors.validate(&name("errors"))?;
         self.map.validate(&name("map"))?;
         if let Some(scans) = self.scans {

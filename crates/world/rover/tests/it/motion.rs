@@ -72,7 +72,8 @@ fn every_image_is_taken_where_the_vehicle_is_then() {
         while drive.step(&witness, &mut |_, flux| CameraImage::Flux(flux)).unwrap().is_some() {}
         witness.0.into_inner().unwrap()
     };
-    let times = ExposureTimes { interval: 0.2, has_unlit: true, duration: 0.1, samples: 2 };
+    let times =
+        ExposureTimes { interval: 0.2, has_unlit: true, duration: 0.1, samples: 2, ..ExposureTimes::default() };
     let found = places(plan(times));
     // The camera is 0.3 m before the vehicle's middle. Exposures at 0, 0.2, 0.4 and 0.6 s, each of two images 25 ms before and
     // after its middle; at the start the vehicle stands, and after 2 s it is at the end of its way.
@@ -190,6 +191,95 @@ fn the_beams_in_turn_see_the_ramp_from_different_places() {
     }
 }
 
+/// A renderer whose light is the camera's x in every pixel.
+struct PlaceAsLight;
+
+impl Renderer for PlaceAsLight {
+    fn name(&self) -> &str {
+        "place as light"
+    }
+
+    fn precision(&self) -> Precision {
+        Precision::F64
+    }
+
+    fn render(&self, scene: &Scene, _request: &Request) -> RenderOutput {
+        let x = scene.camera().scene_from_sensor.position.x + scene.mesh().origin().x;
+        let flux = scene.beams().iter().map(|_| Image::filled(1024, 1024, x)).collect();
+        RenderOutput { camera: None, beams: Vec::new(), returns: Vec::new(), flux, stages: Vec::new() }
+    }
+}
+
+#[test]
+fn each_row_of_a_rolling_shutter_is_seen_from_where_the_vehicle_is_then() {
+    // 0.3 m/s over a plane, 0.25 ms from row to row: row j is seen 0.3 x 0.25 mm x j farther on. Frame 1 begins at x = 0.3 m, and
+    // the camera is 0.3 m before the vehicle's middle. A row is at most half a band's rows off.
+    let mesh = extruded(&LEVEL);
+    let image = |times: ExposureTimes| {
+        let mut drive = Drive::new(plan(times), Arc::clone(&mesh)).unwrap();
+        let mut images = Vec::new();
+        for _ in 0..2 {
+            drive
+                .step(&PlaceAsLight, &mut |_, flux| {
+                    images.push(flux.clone());
+                    CameraImage::Flux(flux)
+                })
+                .unwrap();
+        }
+        images.swap_remove(2)
+    };
+    for (bands, samples) in [(1, 1), (4, 1), (16, 4), (64, 1), (21, 3)] {
+        let times =
+            ExposureTimes { row_time: 2.5e-4, bands, samples, duration: 0.1, ..ExposureTimes::default() };
+        let found = image(times);
+        let row = |j: u32| found.at(7, j) - 0.6;
+        let way = SPEED * 2.5e-4;
+        for j in 0..1024 {
+            assert!(
+                (row(j) - way * f64::from(j)).abs() < way * 512.0 / f64::from(bands) + 1e-12,
+                "{bands} {j}"
+            );
+        }
+        // The middle row of a band is exact: with 4 bands of 256 rows the middles are rows 127.5, 383.5, ...
+        if bands == 4 {
+            for band in 0..4 {
+                let middle = 256.0 * f64::from(band) + 127.5;
+                for j in [256 * band, 256 * band + 255] {
+                    assert!((row(j) - way * middle).abs() < 1e-12, "{j}");
+                }
+            }
+        }
+    }
+    // Off, an image is that of one pose, bit for bit, whatever the number of bands.
+    let off = image(ExposureTimes { bands: 64, ..ExposureTimes::default() });
+    assert_eq!(off, image(ExposureTimes::default()));
+    assert_eq!(off.at(3, 1000), 0.6);
+}
+
+#[test]
+fn a_rolling_shutter_lifts_what_rises_by_the_way_until_its_row() {
+    // The rover takes all rows for those of one pose. A stripe in row j is seen v j t farther on, by which the ramp begins nearer:
+    // its points lie SLOPE v j t above it. 0.9 ms from row to row, 0.92 s for all; with 64 bands a row is off by 7.2 ms, 2.2 mm of way.
+    let mesh = extruded(&RAMP);
+    let times = ExposureTimes { row_time: 9e-4, bands: 64, ..ExposureTimes::default() };
+    let (frames, _) = driven(plan(times), &mesh);
+    for beam in [0, 1] {
+        let seen: Vec<_> = frames[1]
+            .measured
+            .iter()
+            .filter(|one| one.beam == beam && one.point.y.abs() < 0.3)
+            .map(|one| (one.edge.j, one.point.z - SLOPE * (one.point.x + 0.3 - RAMP_FROM)))
+            .collect();
+        assert!(seen.len() > 20, "{}", seen.len());
+        let expected = |j: u32| SLOPE * SPEED * 9e-4 * f64::from(j);
+        let mean = seen.iter().map(|&(j, above)| above - expected(j)).sum::<f64>() / seen.len() as f64;
+        // The bound of pixels lit in part, as above, and half a band: SLOPE 2.2 mm.
+        assert!(mean.abs() < 5e-3 + 1.1e-3, "beam {beam}: {mean}");
+        // The displacement itself is many times that.
+        assert!(seen.iter().all(|&(j, _)| expected(j) > 0.05), "{seen:?}");
+    }
+}
+
 #[test]
 fn a_scan_takes_the_time_of_its_positions_and_sensors_drift_meanwhile() {
     // One frame a second for 3 s, 0.3 m each; scans in frame 0 and, after 0.5 m, in frame 2. Each takes 3 x 4 s.
@@ -245,4 +335,18 @@ fn times_are_checked() {
         assert_eq!(field, Err("drive.times.samples".into()), "{samples}");
     }
     assert_eq!(refused(ExposureTimes { samples: 64, ..default }), Ok(()));
+    // 1024 rows: 1023 times from row to row in a frame of a second, and before the next exposure.
+    let rolling = ExposureTimes { row_time: 1.0 / 1023.0, ..default };
+    assert_eq!(refused(rolling), Ok(()));
+    let row_time = Err("drive.times.row_time".to_string());
+    assert_eq!(refused(ExposureTimes { row_time: 1.0 / 1022.0, ..default }), row_time);
+    assert_eq!(refused(ExposureTimes { row_time: -1e-6, ..default }), row_time);
+    let pair = |interval| ExposureTimes { interval, row_time: 1e-4, duration: 2e-3, ..default };
+    assert_eq!((refused(pair(0.1043)), refused(pair(0.1042))), (Ok(()), interval));
+    for (bands, samples, fits) in
+        [(0, 1, false), (65, 1, false), (64, 1, true), (17, 4, false), (16, 4, true)]
+    {
+        let field = refused(ExposureTimes { bands, samples, ..rolling });
+        assert_eq!(field, if fits { Ok(()) } else { Err("drive.times.bands".into()) }, "{bands} {samples}");
+    }
 }

@@ -45,6 +45,8 @@ pub(crate) struct DriveKeys {
     exposures: Key<String>,
     exposure_interval_ms: Key<f64>,
     motion_blur_samples: Key<i64>,
+    row_time_us: Key<f64>,
+    row_bands: Key<i64>,
     detection: Key<String>,
     threshold_dn: Key<f64>,
     threshold_share: Key<f64>,
@@ -216,7 +218,29 @@ impl Source<'_> {
         let (interval, name) = (&keys.exposure_interval_ms, "drive.exposure_interval_ms");
         self.converted(interval, name, &mut times.interval, 0.0..=1e6, "milliseconds", milli)?;
         let (samples, name) = (&keys.motion_blur_samples, "drive.motion_blur_samples");
-        self.integer(samples, name, &mut times.samples, 1..=MAX_BLUR_SAMPLES.into(), "")
+        self.integer(samples, name, &mut times.samples, 1..=MAX_BLUR_SAMPLES.into(), "")?;
+        let (row, name) = (&keys.row_time_us, "drive.row_time_us");
+        self.converted(row, name, &mut times.row_time, 0.0..=1e6, "microseconds", |us| 1e-6 * us)?;
+        match &keys.row_bands {
+            Some(bands) if keys.row_time_us.is_none() => {
+                let message = "`drive.row_bands` is given; expected it only with `row_time_us`";
+                Err(self.error(bands.span(), message))
+            }
+            Some(_) => {
+                let why = match times.samples {
+                    1 => String::new(),
+                    samples => {
+                        format!("beside {samples} of `motion_blur_samples`, {MAX_BLUR_SAMPLES} images in all")
+                    }
+                };
+                let most = i64::from(MAX_BLUR_SAMPLES / times.samples);
+                self.integer(&keys.row_bands, "drive.row_bands", &mut times.bands, 1..=most, &why)
+            }
+            None => {
+                times.bands = times.bands.min(MAX_BLUR_SAMPLES / times.samples);
+                Ok(())
+            }
+        }
     }
 
     /// Light on Mars, its sun as bright as the file says.

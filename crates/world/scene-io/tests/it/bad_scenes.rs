@@ -460,6 +460,13 @@ fn a_camera_of_a_drive_names_its_keys() {
     bad("optics", "blurs = [{}]", "{}", &format!("`drive.optics.blurs[0]`: {one}"));
     let two = "{ airy_rings = 8, gaussian_um = 1 }";
     bad("optics", &format!("blurs = [{two}]"), two, &format!("`drive.optics.blurs[0]`: {one}"));
+    bad("row_time_us = -1", "-1", "`drive.row_time_us` is -1; expected 0 to 1000000 microseconds");
+    bad("row_bands = 3", "3", "`drive.row_bands` is given; expected it only with `row_time_us`");
+    let twice = "motion_blur_samples = 4\nrow_time_us = 1\nrow_bands = 17";
+    let problem = problem(&format!("version = 1\n[drive]\nwaypoints_m = [[1, 2]]\n{twice}\n"));
+    let message =
+        "`drive.row_bands` is 17; expected 1 to 16 beside 4 of `motion_blur_samples`, 64 images in all";
+    assert_eq!((problem.message.as_str(), problem.marked()), (message, "17"));
     bad(
         "optics",
         "dust = { halo_share = 2 }",

@@ -188,8 +188,19 @@ fn keys_of_the_route_and_of_the_images_set_their_numbers() {
 #[test]
 fn times_of_exposures_follow_from_their_keys_and_from_the_sensor() {
     let keys = "sensor = \"cmos\"\nsubtract_unlit = true\nexposure_interval_ms = 20\nmotion_blur_samples = 5";
-    let expected = ExposureTimes { interval: 0.02, has_unlit: true, duration: 0.4e-3, samples: 5 };
-    assert_eq!(drive(keys).plan.times, expected);
+    let rolling = "row_time_us = 10";
+    let expected = ExposureTimes {
+        interval: 0.02,
+        has_unlit: true,
+        duration: 0.4e-3,
+        samples: 5,
+        row_time: 1e-6 * 10.0,
+        // 64 images of an exposure in all.
+        bands: 12,
+    };
+    assert_eq!(drive(&format!("{keys}\n{rolling}")).plan.times, expected);
+    assert_eq!(drive(&format!("{rolling}\nrow_bands = 64")).plan.times.bands, 64);
+    assert_eq!(drive(rolling).plan.times.bands, 16);
     let default = drive("").plan.times;
     assert!(default.is_at_once());
     assert_eq!(default, ExposureTimes { duration: 2e-3, ..ExposureTimes::default() });
