@@ -99,6 +99,12 @@ def test_images_may_be_left_out() -> None:
     assert all(frame.images == {} for frame in frames) and frames[0].scan == "start" and len(frames[1].points) > 0
 
 
+@pytest.mark.parametrize("to", ["1,0", [(1, 0), (2,)], [None, 1], (1, float("nan"))])
+def test_waypoints_that_are_none_are_named(to: Any) -> None:
+    with pytest.raises(RaypencilError, match=r"^to is .*; expected waypoints of two numbers, such as \[\(3, 0\), \(3, 2\)\]"):
+        drive(Scene(SHORT), to=to)
+
+
 def test_a_frame_has_units_and_is_read_only() -> None:
     pytest.importorskip("xarray")
     *_, frame = drive(Scene(SHORT), to=(0.2, 0))

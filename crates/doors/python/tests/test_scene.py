@@ -73,7 +73,10 @@ def test_replace_makes_another_scene_each_time() -> None:
     [
         (lambda: Scene("version = 1\n[camera]\nfocal_length_mm = -6\n", name="short"),
          r"short.toml:3:19: `camera.focal_length_mm` is -6; expected 0.01 to 100000 millimetres"),
-        (lambda: Scene(camera={"focal_lenght_mm": 6}), "focal_lenght_mm"),
+        (lambda: Scene(camera={"focal_lenght_mm": 6}), "^keyword camera: .*focal_lenght_mm"),
+        (lambda: Scene(vehicle={"heading_deg": 3}, camera={"pitch_down_deg": 400}),
+         r"^keyword camera: `camera.pitch_down_deg` is 400; expected -360 to 360 degrees"),
+        (lambda: Scene(terain={"builtin": "facets"}), r"^keyword terain: "),
         (lambda: Scene(camera={"pitch_down_deg": math.nan}), "camera.pitch_down_deg"),
         (lambda: Scene(camera={"pitch_down_deg": object()}), "`camera.pitch_down_deg` is of type object"),
         (lambda: Scene(camera={"pitch down": 3}), "'pitch down' is no key"),

@@ -19,6 +19,11 @@ pub enum DriveError {
     /// The scene has a `[drive]` without waypoints, and none were given otherwise.
     #[error("the drive has no waypoints; expected --to X,Y, or waypoints_m in [drive] (docs/guide/drive.md)")]
     NoWaypoints,
+    /// The scene has no beam.
+    #[error(
+        "the scene has no beam: no stripe is lit, and nothing can be measured; expected one [[beam]] or more"
+    )]
+    NoBeams,
     /// The flux model's unit is W/m, which no camera can expose.
     #[error(
         "flux model eq1 is in W/m, which no camera can expose; expected radiometric, or a drive without sensor, optics, \

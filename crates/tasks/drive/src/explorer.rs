@@ -59,7 +59,8 @@ fn drive_model(page: &mut ExplorerPage<'_>, scene: &Scene, job: &DriveJob, run: 
         .filter_map(|(index, frame)| {
             let (centre, sectors) = frame.obstacles.as_ref()?;
             let centre = [centre.x - origin.x, centre.y - origin.y];
-            let sectors: Vec<Value> = sectors.iter().map(|(end, judged)| sector(end, *judged, scene)).collect();
+            let sectors: Vec<Value> =
+                sectors.iter().map(|(end, judged)| sector(end, *judged, scene)).collect();
             Some(json!({ "frame": index, "centre": centre, "sectors": sectors }))
         })
         .collect();

@@ -106,6 +106,7 @@ fn in_keys(error: SceneError) -> SceneError {
             format!("drive.{name}_m")
         }
         ["drive", "grid", name @ ("first" | "step" | "last")] => format!("drive.grid_{name}_m"),
+        ["drive", "map", "points"] => "drive.map_points".into(),
         ["drive", "truth", "centre_of_mass", _] => "drive.true_centre_of_mass_m".into(),
         ["drive", "route", waypoint] if waypoint.starts_with("waypoints[") => {
             waypoint.replace("waypoints", "drive.waypoints_m")
@@ -129,8 +130,8 @@ impl DriveJob {
     /// `at` (global x and y, metres) if it is given. `arguments` are the words for [`DriveJob::arguments`].
     ///
     /// # Errors
-    /// [`DriveError::NoDrive`] and [`DriveError::NoWaypoints`] for a scene without a route, [`DriveError::Unit`] for the flux model `eq1` with a camera,
-    /// [`DriveError::Plan`] with the field of a number out of range.
+    /// [`DriveError::NoDrive`] and [`DriveError::NoWaypoints`] for a scene without a route, [`DriveError::NoBeams`] for one
+    /// without a beam, [`DriveError::Unit`] for the flux model `eq1` with a camera, [`DriveError::Plan`] with the field of a number out of range.
     pub fn new(loaded: &LoadedScene, at: Option<[f64; 2]>, arguments: String) -> Result<Self, DriveError> {
         let scene = &loaded.scene;
         let mut notes = Vec::new();
@@ -155,6 +156,9 @@ impl DriveJob {
             (Some(_), _) => return Err(DriveError::NoWaypoints),
             (None, _) => return Err(DriveError::NoDrive),
         };
+        if scene.beams().is_empty() {
+            return Err(DriveError::NoBeams);
+        }
         // A drive from a file was placed by the loader, but the scene may have changed since.
         drive.place(scene, &loaded.vehicle);
         drive.validate_camera()?;

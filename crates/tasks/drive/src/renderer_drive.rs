@@ -16,6 +16,7 @@ use crate::recorded_exposure::{MAX_LIT_PIXELS, RecordedExposure};
 use crate::sun::Sun;
 use crate::swept_ground::SweptGround;
 use crate::through_optics::ThroughOptics;
+use crate::warnings::with_hint;
 
 /// Drive in progress with one renderer.
 pub(crate) struct RendererDrive<'a> {
@@ -62,7 +63,8 @@ impl<'a> RendererDrive<'a> {
         Ok(Self {
             job,
             renderer: ThroughOptics::new(renderer, job).in_sunlight(sun),
-            drive: Drive::new(job.plan.clone(), Arc::clone(&job.mesh))?,
+            drive: Drive::new(job.plan.clone(), Arc::clone(&job.mesh))
+                .map_err(|error| with_hint(error, &job.mesh))?,
             exposures: 0,
             pattern: None,
             sunlit: Vec::new(),

@@ -74,8 +74,23 @@ impl StripeFile {
             let edge = EdgePoint { i: column, j: at.floor() as u32, row: at };
             edges.entry((frame, step)).or_default().push(BeamEdge { beam, edge });
         }
+        for (&(frame, step), of) in &edges {
+            if let Some(BeamEdge { beam, edge }) = given_twice(of) {
+                let step = step.map_or_else(String::new, |step| format!(", step {step}"));
+                let place = format!("frame {frame}{step}, beam {beam}, column {}, row {}", edge.i, edge.row);
+                return Err(fault(place, "given twice".into(), "each edge once"));
+            }
+        }
         Ok(Self { path, edges, asked: Mutex::default() })
     }
+}
+
+/// An edge of an exposure that is there twice.
+fn given_twice(edges: &[BeamEdge]) -> Option<BeamEdge> {
+    let mut sorted = edges.to_vec();
+    sorted
+        .sort_by(|a, b| (a.beam, a.edge.i).cmp(&(b.beam, b.edge.i)).then(a.edge.row.total_cmp(&b.edge.row)));
+    sorted.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0])
 }
 
 impl StripeExtractor for StripeFile {
@@ -186,6 +201,12 @@ mod tests {
             let error = file.unwrap_err().to_string();
             assert!(error.contains(words), "{error}");
         }
+        // One edge twice, apart; another row of its column is another edge.
+        let edge = [3.0, 7.0, 1.0, 2.0, 4.5];
+        let (_folder, file) = written(&[edge, [3.0, 7.0, 1.0, 2.0, 5.5], edge].concat());
+        let error = file.unwrap_err().to_string();
+        let words = "frame 3, step 7, beam 1, column 2, row 4.5: given twice; expected each edge once";
+        assert!(error.contains(words), "{error}");
         let folder = tempfile::tempdir().unwrap();
         write_npy_numbers(folder.path().join("stripes.npy"), &[4], &[0.0; 4]).unwrap();
         let error = StripeFile::read(folder.path(), 2).unwrap_err().to_string();

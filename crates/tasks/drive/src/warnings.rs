@@ -3,8 +3,8 @@
 
 use glam::DVec3;
 use raypencil_rover::{DrivePlan, ExposureMode, OnVehicle, StripeExtractor};
-use raypencil_scene::{Pose, Scene};
-use raypencil_survey::{Warning, WarningCode, warnings};
+use raypencil_scene::{Mesh, Pose, Scene, SceneError};
+use raypencil_survey::{TerrainShape, Warning, WarningCode, lies_on_its_side, warnings};
 
 /// Warns if beams are lit together and a beam is not steeper than the next one. Stripes of one image are told apart by
 /// their order: the lowest is taken for that of beam 0, the steepest.
@@ -99,6 +99,16 @@ pub(crate) fn way_too_steep(plan: &DrivePlan, stances: &[Pose]) -> Option<Warnin
     })
 }
 
+/// The error of a route without ground, with what to do if the ground lies on its side, since its file has another axis up.
+pub(crate) fn with_hint(error: SceneError, mesh: &Mesh) -> SceneError {
+    let on_its_side = || TerrainShape::of(mesh).is_some_and(|shape| lies_on_its_side(&shape));
+    if !error.field.starts_with("drive.route") || !on_its_side() {
+        return error;
+    }
+    let hint = "the terrain stands upright, flat along y: does its file have another axis up? Then set terrain.up=y (or z)";
+    SceneError { expected: format!("{} ({hint})", error.expected), ..error }
+}
+
 /// Warns if a whole drive found no edge of a stripe: then its maps know nothing.
 pub(crate) fn nothing_measured(edge_points: u64) -> Option<Warning> {
     let sentence = "no image gave an edge of a stripe, so no point of the ground was measured.";
@@ -133,6 +143,26 @@ mod tests {
             "{along}"
         );
         assert!(said(0.0, 0.96).unwrap().contains("0 degrees along its length and 55 across"));
+    }
+
+    #[test]
+    fn a_ground_on_its_side_is_told_with_its_remedy() {
+        // Level ground of 8 m: as it is, and as a file with y up that is read as one with z up.
+        let corners = [(-4.0, -4.0), (4.0, -4.0), (4.0, 4.0), (-4.0, 4.0)];
+        let lying = corners.map(|(x, y)| DVec3::new(x, y, 0.0));
+        let upright = corners.map(|(x, y)| DVec3::new(x, 0.0, -y));
+        let faces = || vec![[0, 1, 2], [0, 2, 3]];
+        let error =
+            || SceneError::new("drive.route.start", "(0, 0)", "a place with ground under every wheel");
+        let [lying, upright] = [lying, upright].map(|corners| crate::common::mesh(&corners, faces()));
+        assert_eq!(with_hint(error(), &lying).to_string(), error().to_string());
+        let told = with_hint(error(), &upright).to_string();
+        assert!(
+            told.contains("under every wheel (the terrain stands upright") && told.contains("terrain.up=y"),
+            "{told}"
+        );
+        let other = SceneError::new("drive.grid.last", 1, "more");
+        assert_eq!(with_hint(other.clone(), &upright), other);
     }
 
     #[test]

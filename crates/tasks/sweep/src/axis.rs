@@ -70,7 +70,10 @@ impl Axis {
                 None => rows.push(vec![part.to_string()]),
             }
         }
-        if let Some(twice) = first_twice(rows.iter().map(|row| row[0].as_str())) {
+        let values: Vec<Meaning> = rows.iter().map(|row| Meaning::of(&row[0])).collect();
+        let mut seen = BTreeSet::new();
+        if let Some(twice) = values.iter().position(|value| !seen.insert(value)) {
+            let twice = &rows[twice][0];
             return Err(SweepError::axis(text, format!("{twice} is given twice; expected different values")));
         }
         Ok(Self { keys: vec![key.to_string()], rows })
@@ -113,6 +116,31 @@ impl Axis {
             return Err(refused("there is no run; expected keys in the first line and values below".into()));
         }
         Ok(Self { keys, rows })
+    }
+}
+
+/// What a value means: `30`, `3e1` and `30.0` are one number, and `facets` is the text of `"facets"`.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Meaning {
+    /// Bits of a number.
+    Number(u64),
+    /// A text, and all that is none of these.
+    Words(String),
+}
+
+impl Meaning {
+    fn of(value: &str) -> Self {
+        let quoted = ['"', '\''].into_iter().find_map(|quote| value.strip_prefix(quote)?.strip_suffix(quote));
+        if let Some(text) = quoted {
+            return Self::Words(text.into());
+        }
+        let digits = value.replace('_', "");
+        let is_number = digits.starts_with(|letter: char| letter.is_ascii_digit() || "+-".contains(letter));
+        match digits.parse::<f64>() {
+            // 0 and -0 are one.
+            Ok(number) if is_number => Self::Number((number + 0.0).to_bits()),
+            _ => Self::Words(value.into()),
+        }
     }
 }
 
@@ -210,6 +238,8 @@ mod tests {
         assert_eq!(values("a=1:2:0.25, 7"), ["1.00", "1.25", "1.50", "1.75", "2.00", "7"]);
         assert_eq!(values("a=5:5:1"), ["5"]);
         assert_eq!(values("a=1e-3:3e-3:1e-3"), ["1e-3", "2e-3", "3e-3"]);
+        // A text of digits is no number.
+        assert_eq!(values("a=30,\"30\""), ["30", "\"30\""]);
         // No numbers: a text with colons.
         assert_eq!(values("a=x:y:z"), ["x:y:z"]);
     }
@@ -259,6 +289,10 @@ mod tests {
             ("a=3:-3:-4", "3:-3:-4 passes its end: -1 is before it and -5 behind"),
             ("a=0:1e9:1", "expected at most 1000000"),
             ("a=1,2,1", "1 is given twice"),
+            ("a=30,31,30.0", "30.0 is given twice"),
+            ("a=0,-0.0", "-0.0 is given twice"),
+            ("a=1_000,1e3", "1e3 is given twice"),
+            ("a=facets,\"facets\"", "\"facets\" is given twice"),
             ("a=20:35", "20:35: a range needs a step; expected FIRST:LAST:STEP, such as 20:35:5"),
             ("a=7,20:", "a range needs a step"),
             ("a=1:five:2", "a range has three numbers"),

@@ -216,6 +216,11 @@ impl DrivePlan {
         self.rules.validate(&name("rules"))?;
         self.truth.validate(&name("truth"), &self.vehicle)?;
         self.grid.validate(&name("grid"))?;
+        if self.map.reach() < self.grid.first {
+            let value = format!("{}, which reach {} m from the middle", self.map.points, self.map.reach());
+            let expected = format!("enough for the first radius of the grid, {} m", self.grid.first);
+            return Err(SceneError::new(name("map.points"), value, expected));
+        }
         self.vectors.validate(&name("vectors"))
     }
 }

@@ -374,6 +374,11 @@ pub(crate) fn is_measured(map: &ElevationMap, point: GridPoint) -> bool {
 }
 
 impl MapSize {
+    /// Distance from the middle of the map to its border, metres.
+    pub fn reach(&self) -> f64 {
+        f64::from(self.points / 2) * self.spacing
+    }
+
     /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         check_range(|| format!("{field}.spacing"), self.spacing, 1e-4, 1e3, "m")?;

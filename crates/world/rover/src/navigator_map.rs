@@ -48,7 +48,8 @@ impl VectorRules {
     /// Checks every field. The error names the first one that is out of range.
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         check_range(|| format!("{field}.large"), self.large, 0.0, 1e3, "m")?;
-        check_range(|| format!("{field}.small"), self.small, 0.0, 1e3, "m")
+        check_range(|| format!("{field}.small"), self.small, 0.0, 1e3, "m")?;
+        check_range(|| format!("{field}.large"), self.large, self.small, 1e3, "m (from `small`)")
     }
 }
 
@@ -151,5 +152,8 @@ mod tests {
         assert_eq!(labels, [Label::Obstacle, Label::Unknown]);
         assert_eq!((vectors[0].to, vectors[1].from), (DVec2::new(1.5, 0.0), DVec2::new(1.5, 0.0)));
         assert!(VectorRules { small: f64::NAN, large: 1.0 }.validate("vectors").is_err());
+        let rules =
+            |large, small| VectorRules { large, small }.validate("vectors").map_err(|error| error.field);
+        assert_eq!((rules(1.0, 1.0), rules(0.99, 1.0)), (Ok(()), Err("vectors.large".into())));
     }
 }

@@ -92,6 +92,11 @@ impl RadialGrid {
     pub fn validate(&self, field: &str) -> Result<(), SceneError> {
         check_count(|| format!("{field}.sectors"), self.sectors.into(), 1, 100_000)?;
         check_range(|| format!("{field}.half_angle"), self.half_angle, 0.0, std::f64::consts::PI, "rad")?;
+        if self.sectors > 1 && (self.half_angle == 0.0 || self.half_angle >= std::f64::consts::PI) {
+            let expected =
+                "more than 0 and less than pi rad with more than one sector: else two have one direction";
+            return Err(SceneError::new(format!("{field}.half_angle"), self.half_angle, expected));
+        }
         check_range(|| format!("{field}.first"), self.first, 0.0, 1e3, "m")?;
         check_range(|| format!("{field}.step"), self.step, 1e-3, 1e3, "m")?;
         check_range(|| format!("{field}.last"), self.last, self.first, 1e3, "m (from `first`)")?;

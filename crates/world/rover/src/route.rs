@@ -119,6 +119,14 @@ impl Route {
                 return Err(SceneError::new(name, point, "two numbers from -1e12 to 1e12 m"));
             }
         }
+        if let Some(twice) = self.waypoints.windows(2).position(|pair| pair[0] == pair[1]) {
+            let name = format!("{field}.waypoints[{}]", twice + 1);
+            return Err(SceneError::new(
+                name,
+                self.waypoints[twice],
+                "another place than the waypoint before",
+            ));
+        }
         check_range(|| format!("{field}.heading"), self.heading, -1e3, 1e3, "rad")?;
         check_range(|| format!("{field}.speed"), self.speed, 1e-4, 1e2, "m/s")?;
         check_range(|| format!("{field}.turn_rate"), self.turn_rate, 1e-4, 1e2, "rad/s")?;
@@ -170,6 +178,16 @@ mod tests {
         assert!((route.frame(1).unwrap().heading - heading - 0.03).abs() < 1e-12);
         let slow = Route { speed: 0.0, ..route };
         assert!(slow.validate("route").unwrap_err().to_string().contains("route.speed"));
+    }
+
+    #[test]
+    fn a_waypoint_twice_in_a_row_is_refused() {
+        let route = |places: &[[f64; 2]]| {
+            let waypoints = places.iter().map(|&place| place.into()).collect();
+            Route::through(DVec2::ZERO, waypoints).validate("route").map_err(|error| error.field)
+        };
+        assert_eq!(route(&[[1.0, 0.0], [2.0, 0.0], [1.0, 0.0]]), Ok(()));
+        assert_eq!(route(&[[1.0, 0.0], [2.0, 0.0], [2.0, 0.0]]), Err("route.waypoints[2]".into()));
     }
 
     #[test]

@@ -261,11 +261,16 @@ def drive(
         raise RaypencilError("record needs output: the folder to record into")
     points: list[tuple[float, float]] = []
     if to is not None:
-        array = np.asarray(to, dtype=np.float64)
+        wrong = RaypencilError(f"to is {to!r}; expected waypoints of two numbers, such as [(3, 0), (3, 2)]")
+        try:
+            array = np.asarray(to, dtype=np.float64)
+        except (TypeError, ValueError):
+            # A text, or places of different lengths.
+            raise wrong from None
         if array.ndim == 1:
             array = array[np.newaxis]
         if array.ndim != 2 or array.shape[1] != 2 or not np.isfinite(array).all():
-            raise RaypencilError(f"to is {to!r}; expected waypoints of two numbers, such as [(3, 0), (3, 2)]")
+            raise wrong
         points = [(float(x), float(y)) for x, y in array]
     if with_ is None:
         with_ = "scanline-paper" if as_printed else "scanline"

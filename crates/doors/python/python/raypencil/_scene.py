@@ -160,7 +160,13 @@ class Scene:
             is_text = isinstance(source, str) and "\n" in text
             given = [*_toml.settings(tables), *given]
         _raypencil.refuse_contradictions(given)
-        self._load(text, is_text, name, tuple(given), progress)
+        try:
+            self._load(text, is_text, name, tuple(given), progress)
+        except RaypencilError as error:
+            if source is not None:
+                raise
+            # Nobody wrote the text: its lines are the keywords.
+            raise type(error)(_toml.by_keyword(str(error), f"{name}.toml", tables, text)) from None
 
     def _load(
         self, source: str, is_text: bool, name: str, settings: tuple[tuple[str, str], ...], progress: Progress = False

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -50,6 +51,16 @@ def document(tables: Mapping[str, Any]) -> str:
     """The text of a scene file. ``version = 1`` is added."""
     text = "" if "version" in tables else "version = 1\n"
     return text + "".join(f"{name(key, key)} = {value(of, key)}\n" for key, of in tables.items())
+
+
+def by_keyword(message: str, file: str, tables: Mapping[str, Any], text: str) -> str:
+    """A message about the ``document`` of tables, with the keyword in place of its line and column."""
+    place = re.match(re.escape(file) + r":(\d+):\d+: ", message)
+    if not place:
+        return message
+    lines = text.splitlines()
+    key = lines[min(int(place[1]), len(lines)) - 1].split(" = ")[0]
+    return f"keyword {key}: {message[place.end():]}" if key in tables else message[place.end() :]
 
 
 def settings(of: Any, key: str = "") -> Iterator[tuple[str, str]]:

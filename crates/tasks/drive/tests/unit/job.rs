@@ -199,6 +199,13 @@ fn subtracting_an_unlit_image_removes_the_bias() {
 }
 
 #[test]
+fn a_scene_without_a_beam_has_no_drive() {
+    let dark = load_text(&format!("version = 1\nbeam = []\n{FLAT}\n[drive]\n{SHORT}\n"), "dark").unwrap();
+    let error = DriveJob::new(&dark, None, String::new()).unwrap_err();
+    assert!(error.to_string().contains("no beam: no stripe is lit"), "{error}");
+}
+
+#[test]
 fn scenes_without_a_drive_are_refused() {
     let still = load_text(&format!("version = 1\n{FLAT}\n"), "still").unwrap();
     let error = DriveJob::new(&still, None, String::new()).unwrap_err();
@@ -281,6 +288,15 @@ fn errors_of_several_keys_together_name_the_keys() {
         ("wheel_width_m = 2", "drive.wheel_width_m is 2: expected 0.01 to "),
         ("wheel_radius_m = 1.5", "drive.wheel_radius_m is 1.5: expected "),
         ("wheelbase_m = 30", "drive.grid_last_m is "),
+        (
+            "wheelbase_m = 30\ngrid_last_m = 20",
+            "drive.map_points is 201, which reach 10 m from the middle: expected ",
+        ),
+        ("true_centre_of_mass_m = [0.7, 0, 1]", "drive.true_centre_of_mass_m is 0.7: expected -0.6 to 0.6 m"),
+        (
+            "true_centre_of_mass_m = [0, -0.6, 1]",
+            "drive.true_centre_of_mass_m is -0.6: expected -0.5 to 0.5 m",
+        ),
     ] {
         let error = DriveJob::new(&small(keys, ""), None, "small.toml".into()).unwrap_err().to_string();
         assert!(error.starts_with(message), "{error}");

@@ -227,9 +227,7 @@ fn stopped(truth: TrueLimits) -> Option<(f64, ObstructionKind)> {
     let plan = DrivePlan { truth, ..plan() };
     let pose = Attitude::default().at(DVec3::ZERO);
     match first_obstacles(&GroundFaces::new(&step()), &plan, &pose).remove(0) {
-        First::Obstacle { radius, obstruction } => {
-            Some(((10.0 * radius).round() / 10.0, obstruction.kind))
-        }
+        First::Obstacle { radius, obstruction } => Some(((10.0 * radius).round() / 10.0, obstruction.kind)),
         First::Edge { .. } | First::None => None,
     }
 }

@@ -185,7 +185,15 @@ impl Source<'_> {
             let numbers = self.list(key, "drive.waypoints_m", &[2], GLOBAL_M, "metres")?;
             Ok(DVec2::from_slice(numbers))
         };
-        list.get_ref().iter().map(waypoint).collect()
+        let places: Vec<DVec2> = list.get_ref().iter().map(waypoint).collect::<Result<_, SceneIoError>>()?;
+        match places.windows(2).position(|pair| pair[0] == pair[1]) {
+            Some(twice) => {
+                let message =
+                    "`drive.waypoints_m` has this place twice in a row; expected another one after it";
+                Err(self.error(list.get_ref()[twice + 1].span(), message))
+            }
+            None => Ok(places),
+        }
     }
 
     fn route(&self, keys: &DriveKeys, plan: &mut DrivePlan) -> Result<(), SceneIoError> {
@@ -368,10 +376,44 @@ impl Source<'_> {
         self.converted(angle, name, &mut grid.half_angle, 0.0..=180.0, "degrees", f64::to_radians)?;
         self.integer(&keys.grid_sectors, "drive.grid_sectors", &mut grid.sectors, 1..=100_000, "")?;
 
+        let degenerate = match keys.grid_half_angle_deg.as_ref().map(|angle| (angle, *angle.get_ref())) {
+            Some((angle, 0.0)) => Some((angle, "more than 0", "all sectors")),
+            Some((angle, 180.0)) => Some((angle, "less than 180", "the first sector and the last")),
+            _ => None,
+        };
+        if let (Some((angle, expected, which)), true) = (degenerate, grid.sectors > 1) {
+            let message = format!(
+                "`drive.grid_half_angle_deg` is {}; expected {expected}, or `grid_sectors` 1: {which} have one direction",
+                angle.get_ref()
+            );
+            return Err(self.error(angle.span(), message));
+        }
+        let reach = plan.map.reach();
+        let sizes = [span(&keys.map_points), span(&keys.map_spacing_m), span(&keys.grid_first_m)];
+        if let (Some(span), true) = (sizes.into_iter().flatten().next(), reach < plan.grid.first) {
+            let message = format!(
+                "the map reaches {reach} m from its middle; expected the first radius or more, {} m: nothing can be tested on it \
+                 (`drive.map_points`, `drive.map_spacing_m`, `drive.grid_first_m`)",
+                plan.grid.first
+            );
+            return Err(self.error(span, message));
+        }
+
         plan.vectors = VectorRules::for_vehicle(&plan.vehicle);
         let vectors = &mut plan.vectors;
         self.number(&keys.vector_large_m, "drive.vector_large_m", &mut vectors.large, 0.0..=1e3, "metres")?;
-        self.number(&keys.vector_small_m, "drive.vector_small_m", &mut vectors.small, 0.0..=1e3, "metres")
+        self.number(&keys.vector_small_m, "drive.vector_small_m", &mut vectors.small, 0.0..=1e3, "metres")?;
+        let given = span(&keys.vector_large_m).or(span(&keys.vector_small_m));
+        match given {
+            Some(span) if vectors.large < vectors.small => {
+                let message = format!(
+                    "`drive.vector_large_m` is {}; expected `vector_small_m` or more, {}",
+                    vectors.large, vectors.small
+                );
+                Err(self.error(span, message))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// What the vehicle can truly do.

@@ -349,6 +349,8 @@ fn a_drive_names_its_keys() {
     };
     bad("waypoints_m = [[1, 2], [3]]", "[3]", "`drive.waypoints_m` has 1 numbers; expected 2");
     bad("waypoints_m = []", "[]", "`drive.waypoints_m` has 0 places; expected 1 to 10000");
+    let message = "`drive.waypoints_m` has this place twice in a row; expected another one after it";
+    bad("waypoints_m = [[1, 2], [3, 4], [3, 4.0]]", "[3, 4.0]", message);
 
     let bad = |line: &str, marked: &str, message: &str| {
         let problem = problem(&format!("version = 1\n[drive]\nwaypoints_m = [[1, 2]]\n{line}\n"));
@@ -401,6 +403,26 @@ fn a_drive_names_its_keys() {
     let line = "sun = { azimuth_deg = 30 }";
     let missing = problem(&format!("version = 1\n[drive]\nwaypoints_m = [[1, 2]]\n{line}\n"));
     assert!(missing.message.contains("the key `elevation_deg` is missing"), "{}", missing.message);
+    for (angle, expected) in [
+        ("0", "more than 0, or `grid_sectors` 1: all sectors have one direction"),
+        ("180", "less than 180, or `grid_sectors` 1: the first sector and the last have one direction"),
+    ] {
+        let message = format!("`drive.grid_half_angle_deg` is {angle}; expected {expected}");
+        bad(&format!("grid_half_angle_deg = {angle}"), angle, &message);
+    }
+    let small = |reach: &str, first: &str| {
+        format!(
+            "the map reaches {reach} m from its middle; expected the first radius or more, {first} m: nothing can be tested on it \
+             (`drive.map_points`, `drive.map_spacing_m`, `drive.grid_first_m`)"
+        )
+    };
+    bad("map_points = 3", "3", &small("0.1", "0.7"));
+    bad("map_spacing_m = 0.001", "0.001", &small("0.1", "0.7"));
+    bad("grid_first_m = 11\ngrid_last_m = 12", "11", &small("10", "11"));
+    let order = "expected `vector_small_m` or more";
+    let by_default = format!("`drive.vector_large_m` is 0.5; {order}, 0.625");
+    bad("vector_large_m = 0.5", "0.5", &by_default);
+    bad("vector_small_m = 1.5", "1.5", &format!("`drive.vector_large_m` is 1.25; {order}, 1.5"));
     bad("grid_sectors = 0", "0", "`drive.grid_sectors` is 0; expected 1 to 100000");
     for key in ["scan_from_deg", "scan_to_deg"] {
         bad(&format!("{key} = 200"), "200", &format!("`drive.{key}` is 200; expected -180 to 180 degrees"));
@@ -438,6 +460,13 @@ fn times_of_exposures_name_their_keys() {
         "`drive.exposure_interval_ms` is -1; expected 0 to 1000000 milliseconds",
     );
     bad("motion_blur_samples = 65", "65", "`drive.motion_blur_samples` is 65; expected 1 to 64");
+    bad("row_time_us = -1", "-1", "`drive.row_time_us` is -1; expected 0 to 1000000 microseconds");
+    bad("row_bands = 3", "3", "`drive.row_bands` is given; expected it only with `row_time_us`");
+    let twice = "motion_blur_samples = 4\nrow_time_us = 1\nrow_bands = 17";
+    let problem = problem(&format!("version = 1\n[drive]\nwaypoints_m = [[1, 2]]\n{twice}\n"));
+    let message =
+        "`drive.row_bands` is 17; expected 1 to 16 beside 4 of `motion_blur_samples`, 64 images in all";
+    assert_eq!((problem.message.as_str(), problem.marked()), (message, "17"));
 }
 
 #[test]
@@ -460,13 +489,6 @@ fn a_camera_of_a_drive_names_its_keys() {
     bad("optics", "blurs = [{}]", "{}", &format!("`drive.optics.blurs[0]`: {one}"));
     let two = "{ airy_rings = 8, gaussian_um = 1 }";
     bad("optics", &format!("blurs = [{two}]"), two, &format!("`drive.optics.blurs[0]`: {one}"));
-    bad("row_time_us = -1", "-1", "`drive.row_time_us` is -1; expected 0 to 1000000 microseconds");
-    bad("row_bands = 3", "3", "`drive.row_bands` is given; expected it only with `row_time_us`");
-    let twice = "motion_blur_samples = 4\nrow_time_us = 1\nrow_bands = 17";
-    let problem = problem(&format!("version = 1\n[drive]\nwaypoints_m = [[1, 2]]\n{twice}\n"));
-    let message =
-        "`drive.row_bands` is 17; expected 1 to 16 beside 4 of `motion_blur_samples`, 64 images in all";
-    assert_eq!((problem.message.as_str(), problem.marked()), (message, "17"));
     bad(
         "optics",
         "dust = { halo_share = 2 }",

@@ -211,7 +211,7 @@ fn keys_of_the_maps_and_scans_set_their_numbers() {
     let plan = drive(
         "map_spacing_m = 0.2\nmap_points = 51\nobstacles_every_frames = 5\nslope_front = 0.1\nslope_rear = 0.2\n\
          slope_length = 0.3\nslope_closer = 0.4\ngrid_first_m = 1.5\ngrid_last_m = 1.5\ngrid_step_m = 0.25\n\
-         grid_half_angle_deg = 180\nvector_large_m = 2\nvector_small_m = 3\nscan_every_m = 7\nscan_steps = 9\n\
+         grid_half_angle_deg = 90\nvector_large_m = 3\nvector_small_m = 2\nscan_every_m = 7\nscan_steps = 9\n\
          scan_step_s = 0.5\n\
          scan_from_deg = -90\nscan_to_deg = 90\nscan_inconsistency_m = 0.5\nscan_least_points = 3",
     )
@@ -220,8 +220,8 @@ fn keys_of_the_maps_and_scans_set_their_numbers() {
     assert_eq!(plan.rules.slopes, SlopeLimits { front: 0.1, rear: 0.2, length: 0.3, closer: 0.4 });
     // A grid of one radius: the last is the first.
     assert_eq!((plan.grid.first, plan.grid.last, plan.grid.step), (1.5, 1.5, 0.25));
-    near(plan.grid.half_angle, PI);
-    assert_eq!((plan.vectors.large, plan.vectors.small), (2.0, 3.0));
+    near(plan.grid.half_angle, FRAC_PI_2);
+    assert_eq!((plan.vectors.large, plan.vectors.small), (3.0, 2.0));
     let scans = plan.scans.unwrap();
     assert_eq!((scans.every, scans.inconsistency, scans.least_points), (Some(7.0), Some(0.5), 3));
     near(plan.sweep.from, -FRAC_PI_2);
