@@ -292,6 +292,7 @@ fn errors_of_several_keys_together_name_the_keys() {
             "wheelbase_m = 30\ngrid_last_m = 20",
             "drive.map_points is 201, which reach 10 m from the middle: expected ",
         ),
+        ("row_time_us = 5e5", "drive.row_time_us is 0.5 s, thus "),
         ("true_centre_of_mass_m = [0.7, 0, 1]", "drive.true_centre_of_mass_m is 0.7: expected -0.6 to 0.6 m"),
         (
             "true_centre_of_mass_m = [0, -0.6, 1]",

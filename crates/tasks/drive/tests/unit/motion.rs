@@ -50,9 +50,42 @@ fn the_unlit_image_is_taken_farther_on() {
 
 #[test]
 fn both_sides_agree_on_a_moving_vehicle() {
-    let keys = format!("{MOVING}\nmotion_blur_samples = 3\noptics = {{ speckle_contrast = 0.5 }}");
-    let run = driven(&filtered(&keys), &["scanline", "tracer"]);
-    assert!(run.passes(), "{:?}", run.differences);
+    // 128 rows in 64 ms.
+    for more in ["", "\nrow_time_us = 500\nrow_bands = 4"] {
+        let keys = format!("{MOVING}\nmotion_blur_samples = 3\noptics = {{ speckle_contrast = 0.5 }}{more}");
+        let run = driven(&filtered(&keys), &["scanline", "tracer"]);
+        assert!(run.passes(), "{:?}", run.differences);
+    }
+}
+
+#[test]
+fn the_sunlight_of_a_rolling_shutter_is_that_of_each_row() {
+    // A plane behind a wall, as above, seen at 1.2 m/s. 128 rows, 1.9 ms apart: row j is seen 1.2 x 1.9 mm x j farther on, the last
+    // one 0.29 m. With all rows at once the wall's upper edge is seen in row 64.6; from 0.147 m farther on, where the vehicle is
+    // for row 64.6, in row 66.6.
+    let p = DVec3::new;
+    let ground = [p(-30.0, -30.0, 0.0), p(30.0, -30.0, 0.0), p(30.0, 30.0, 0.0), p(-30.0, 30.0, 0.0)];
+    let wall = [p(3.0, -9.0, 0.0), p(3.0, 9.0, 0.0), p(3.0, 9.0, 0.5), p(3.0, -9.0, 0.5)];
+    let walled = mesh(&[ground, wall].concat(), vec![[0, 1, 2], [0, 2, 3], [4, 6, 5], [4, 7, 6]]);
+    let first_dark = |more: &str| {
+        let keys = MOVING.replace("subtract_unlit = true\n", "").replace("\nexposure_interval_ms = 250", more);
+        let mut job = filtered(&keys);
+        job.mesh = walled.clone();
+        let sun = Sun::of(&job).unwrap();
+        let renderer = Tracer::new();
+        let mut drive = RendererDrive::new(&job, &renderer, sun.as_ref()).unwrap();
+        let image = drive.step(false, &mut |_, _| {}).unwrap().unwrap().images.swap_remove(0).1;
+        // Ground before the wall's top is bright, the wall below it dark; above the ground is the sky.
+        (60..128).find(|&j| image.at(64, j) < image.at(64, j - 1) / 2).unwrap()
+    };
+    // Row 64 holds the edge and row 65 is all wall.
+    let still = first_dark("");
+    let rolling = first_dark("\nrow_time_us = 1900\nrow_bands = 64");
+    let row = |x: f64| 64.0 + 8e-3 / 72e-6 * libm::tan(libm::atan2(1.0, 2.7 - x) - 20.0_f64.to_radians());
+    // The edge is in the row j where the vehicle is at 1.2 x 1.9 mm x j.
+    let expected = (0..128).find(|&j| f64::from(j) > row(1.2 * 1.9e-3 * f64::from(j))).unwrap();
+    assert!(still.abs_diff(row(0.0).ceil() as u32) <= 1, "{still}");
+    assert!(rolling.abs_diff(expected) <= 1 && rolling >= still + 2, "{rolling} {expected} {still}");
 }
 
 #[test]
