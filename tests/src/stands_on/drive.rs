@@ -7,7 +7,7 @@ use raypencil::io::load_text;
 use raypencil::rover::{
     DrivePlan, ElevationMap, ElevationSource, ErrorMargins, LocalisationErrors, MapRules, MapSize,
     MapWithShadows, MissingReason, RadialGrid, ScanRule, SlopeLimits, Sweep, Traversability,
-    TraversabilityRules, Vehicle,
+    TraversabilityRules, TrueLimits, Vehicle,
 };
 
 use super::Fingerprint;
@@ -69,6 +69,12 @@ fn add_plan(digest: &mut Fingerprint, plan: &DrivePlan) {
         plan.errors;
     let MapRules { start, elevation, extrapolate, several, inconsistency, settle } = plan.map_rules;
     digest.numbers([wheelbase, track, wheel_radius, wheel_width, clearance, f64::from(rim_points)]);
+    // By default the vehicle has no limit that its rover has not, which changes nothing that is found.
+    if plan.truth != TrueLimits::default() {
+        let TrueLimits { front, rear, length, clearance, step, centre_of_mass } = plan.truth;
+        digest.numbers([front, rear, length, clearance, step].map(|limit| limit.unwrap_or(-1.0)));
+        digest.point(centre_of_mass.unwrap_or_default());
+    }
     digest.numbers([front, rear, length, closer, closer_share, gaps.map_or(-1.0, |gaps| gaps.max_width)]);
     digest.numbers([
         obstacle,

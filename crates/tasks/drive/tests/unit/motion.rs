@@ -68,7 +68,8 @@ fn the_sunlight_of_a_rolling_shutter_is_that_of_each_row() {
     let wall = [p(3.0, -9.0, 0.0), p(3.0, 9.0, 0.0), p(3.0, 9.0, 0.5), p(3.0, -9.0, 0.5)];
     let walled = mesh(&[ground, wall].concat(), vec![[0, 1, 2], [0, 2, 3], [4, 6, 5], [4, 7, 6]]);
     let first_dark = |more: &str| {
-        let keys = MOVING.replace("subtract_unlit = true\n", "").replace("\nexposure_interval_ms = 250", more);
+        let keys =
+            MOVING.replace("subtract_unlit = true\n", "").replace("\nexposure_interval_ms = 250", more);
         let mut job = filtered(&keys);
         job.mesh = walled.clone();
         let sun = Sun::of(&job).unwrap();

@@ -72,8 +72,13 @@ fn every_image_is_taken_where_the_vehicle_is_then() {
         while drive.step(&witness, &mut |_, flux| CameraImage::Flux(flux)).unwrap().is_some() {}
         witness.0.into_inner().unwrap()
     };
-    let times =
-        ExposureTimes { interval: 0.2, has_unlit: true, duration: 0.1, samples: 2, ..ExposureTimes::default() };
+    let times = ExposureTimes {
+        interval: 0.2,
+        has_unlit: true,
+        duration: 0.1,
+        samples: 2,
+        ..ExposureTimes::default()
+    };
     let found = places(plan(times));
     // The camera is 0.3 m before the vehicle's middle. Exposures at 0, 0.2, 0.4 and 0.6 s, each of two images 25 ms before and
     // after its middle; at the start the vehicle stands, and after 2 s it is at the end of its way.
