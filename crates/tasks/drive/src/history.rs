@@ -22,6 +22,9 @@ pub(crate) struct CellChange {
     pub source: u8,
 }
 
+/// A sector of an obstacle map, and what is true of it.
+pub(crate) type JudgedEnd = (SectorEnd, Option<JudgedSector>);
+
 /// One frame of the time line.
 #[derive(Debug, Clone)]
 pub(crate) struct HistoryFrame {
@@ -36,7 +39,7 @@ pub(crate) struct HistoryFrame {
     /// Whether a vertical scan was made in this frame.
     pub has_scan: bool,
     /// Centre and sectors of the obstacle map, if the frame made one, and each sector against the truth.
-    pub obstacles: Option<(DVec2, Vec<(SectorEnd, Option<JudgedSector>)>)>,
+    pub obstacles: Option<(DVec2, Vec<JudgedEnd>)>,
 }
 
 /// The frames and changes of a drive.
