@@ -35,11 +35,11 @@ pub(crate) fn foretold(
             (Value::Number(stated), Value::Number(exact)) => is_half(stated, exact),
             _ => return stated,
         },
-        Mistake::ZBuffer { zero_at, one_at } => match (stated, exact) {
+        Mistake::ZBuffer { low, low_at, one_at } => match (stated, exact) {
             (Value::Number(stated), Value::Number(exact)) => {
                 let storage = case.recorded.storage.get(&(channel.sensor, channel.item));
                 let slack = z_buffer_slack(storage.copied().unwrap_or(Storage::F64));
-                (z_buffer(exact, zero_at, one_at) - stated).abs() <= slack
+                (z_buffer(exact, low, [low_at, one_at]) - stated).abs() <= slack
             }
             _ => return stated,
         },
@@ -139,9 +139,9 @@ pub(crate) fn is_rounded(storage: Storage, stated: f64, exact: f64, quantum: f64
     (stated - multiple).abs() <= slack && is_next
 }
 
-/// What a z-buffer holds for a depth: linear in its reciprocal, 0 and 1 at these depths, which may be infinite.
-pub(crate) fn z_buffer(depth: f64, zero_at: f64, one_at: f64) -> f64 {
-    (1.0 / zero_at - 1.0 / depth) / (1.0 / zero_at - 1.0 / one_at)
+/// What a z-buffer holds for a depth: linear in its reciprocal, `low` and 1 at these depths, which may be infinite.
+pub(crate) fn z_buffer(depth: f64, low: f64, [low_at, one_at]: [f64; 2]) -> f64 {
+    low + (1.0 - low) * ((1.0 / low_at - 1.0 / depth) / (1.0 / low_at - 1.0 / one_at))
 }
 
 /// How far a number of a z-buffer may be from what it should be: a program computes it in a few steps of its own arithmetic, of numbers

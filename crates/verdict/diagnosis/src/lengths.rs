@@ -7,7 +7,7 @@ use crate::channel::{Value, hit_quantity};
 use crate::correction::{Correction, corrected};
 use crate::forward::{is_half, is_rounded, z_buffer, z_buffer_slack};
 use crate::mistake::{Length, Mistake};
-use crate::numbers::{middle, plainest, plainest_between, rounded_to};
+use crate::numbers::{middle, plainest, plainest_between, rounded_to_digits};
 use raypencil_files::Storage;
 use raypencil_scene::{HitQuantity, Place};
 
@@ -26,8 +26,8 @@ const MIN_SHARE_OF_MULTIPLES: f64 = 0.95;
 /// Share of the depths that must follow the law of a z-buffer. Tuned: an edge may say otherwise.
 const MIN_SHARE_OF_LAW: f64 = 0.95;
 
-/// Decimal places of a z-buffer's planes, metres, at most.
-const MAX_PLACES: i32 = 6;
+/// Digits of the depth of a z-buffer's plane, at most.
+const MAX_DIGITS: usize = 9;
 
 /// Lengths that must occur, at least, if they are rounded. Tuned.
 const MIN_ROUNDED_LENGTHS: usize = 3;
@@ -168,31 +168,35 @@ impl Pairs {
         let near = 8.0 * (spread + slack);
         by_reciprocal.retain(|(stated, u)| (stated - rest - slope * u).abs() <= near);
         let [rest, slope] = line_through(&by_reciprocal)?;
-        // Reciprocals of the depths at which it is 0 and 1.
-        let (zero, one) = (-rest / slope, (1.0 - rest) / slope);
-        let share = |zero_at: f64, one_at: f64| {
-            let is =
-                |(stated, exact): &&(f64, f64)| (z_buffer(*exact, zero_at, one_at) - stated).abs() <= slack;
+        let share = |low: f64, at: [f64; 2]| {
+            let is = |(stated, exact): &&(f64, f64)| (z_buffer(*exact, low, at) - stated).abs() <= slack;
             self.values.iter().filter(is).count() as f64 / self.values.len() as f64
         };
         // One over the depth has a name of its own.
-        if share(f64::INFINITY, 1.0) >= MIN_SHARE_OF_LAW {
+        if share(0.0, [f64::INFINITY, 1.0]) >= MIN_SHARE_OF_LAW {
             return None;
         }
-        // The plainest numbers that are right. None is plainer than infinity, of which the reciprocal is 0.
-        let decimals = || [None].into_iter().chain((0..=MAX_PLACES).map(Some));
-        let depth = |reciprocal: f64, decimals: Option<i32>| match decimals {
-            None => f64::INFINITY,
-            Some(decimals) => rounded_to(1.0 / reciprocal, decimals),
+        // The plainest numbers that are right: infinity, of which the reciprocal is 0, then few digits before many.
+        let depth = |reciprocal: f64, digits: usize| match digits {
+            0 => f64::INFINITY,
+            digits => rounded_to_digits(1.0 / reciprocal, digits),
         };
-        decimals().flat_map(|first| decimals().map(move |second| (first, second))).find_map(
-            |(first, second)| {
-                let (zero_at, one_at) = (depth(zero, first), depth(one, second));
-                let is_law = zero_at > 0.0 && one_at > 0.0 && zero_at != one_at;
-                (is_law && share(zero_at, one_at) >= MIN_SHARE_OF_LAW)
-                    .then_some(Mistake::ZBuffer { zero_at, one_at })
-            },
-        )
+        let law = |low: f64, digits: [usize; 2]| {
+            // The reciprocals of the depths at both ends.
+            let at = [depth((low - rest) / slope, digits[0]), depth((1.0 - rest) / slope, digits[1])];
+            let is_law = at[0] > 0.0 && at[1] > 0.0 && at[0] != at[1];
+            (is_law && share(low, at) >= MIN_SHARE_OF_LAW).then_some(Mistake::ZBuffer {
+                low,
+                low_at: at[0],
+                one_at: at[1],
+            })
+        };
+        let pairs = (0..=2 * MAX_DIGITS).flat_map(|all| {
+            (all.saturating_sub(MAX_DIGITS)..=all.min(MAX_DIGITS)).map(move |one| [one, all - one])
+        });
+        pairs
+            .flat_map(|digits| [0.0, -1.0].map(|low| (low, digits)))
+            .find_map(|(low, digits)| law(low, digits))
     }
 
     /// The largest quantum of which nearly all lengths are multiples.

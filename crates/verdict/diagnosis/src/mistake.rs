@@ -208,11 +208,13 @@ pub enum Mistake {
     Inverse(Length),
     /// A length is the square of the true one.
     Squared(Length),
-    /// `depth.Z` is what a z-buffer holds: (1/zero - 1/depth) / (1/zero - 1/one), metres; the reciprocal of what is infinite is 0.
+    /// `depth.Z` is what a z-buffer holds, which is linear in the reciprocal of the depth; that of what is infinite is 0.
     ZBuffer {
-        /// The depth at which it is 0.
-        zero_at: f64,
-        /// The depth at which it is 1.
+        /// The number at one end: 0, or -1 as OpenGL has it.
+        low: f64,
+        /// The depth there, metres.
+        low_at: f64,
+        /// The depth at which it is 1, metres.
         one_at: f64,
     },
     /// A beam's cells hold what is true of the beam with this index.

@@ -26,8 +26,13 @@ pub(crate) fn plainest_between(low: f64, high: f64) -> f64 {
 }
 
 /// By way of text: the decimal fraction itself, and no product of a rounded power of ten.
-pub(crate) fn rounded_to(number: f64, decimals: i32) -> f64 {
+fn rounded_to(number: f64, decimals: i32) -> f64 {
     format!("{number:.*}", decimals as usize).parse().unwrap_or(number)
+}
+
+/// The number with so many digits, one or more, that is nearest to another.
+pub(crate) fn rounded_to_digits(number: f64, digits: usize) -> f64 {
+    format!("{number:.*e}", digits - 1).parse().unwrap_or(number)
 }
 
 /// Median and width of the middle half of some numbers, which are sorted. `None` if there are fewer than `least`.

@@ -101,12 +101,12 @@ impl fmt::Display for Mistake {
                 let (subject, verb) = subject(*of);
                 write!(f, "{subject} {verb} the square of the true length")
             }
-            Self::ZBuffer { zero_at, one_at } => {
+            Self::ZBuffer { low, low_at, one_at } => {
                 let at = |depth: f64| if depth.is_finite() { metres(depth) } else { "infinity".to_string() };
                 write!(
                     f,
-                    "depth.Z holds numbers of a z-buffer, 0 at {} and 1 at {}: depth is in metres",
-                    at(*zero_at),
+                    "depth.Z holds numbers of a z-buffer, {low} at {} and 1 at {}: depth is in metres",
+                    at(*low_at),
                     at(*one_at)
                 )
             }

@@ -423,10 +423,16 @@ fn numbers_of_a_z_buffer_in_single_precision_are_told_and_noise_is_not() {
     let (a, b) = (far / (far - near), -far * near / (far - near));
     let told = with(&|_, depth| f64::from(a + b / depth as f32)).expect("a reason");
     assert!(told.contains("depth.Z holds numbers of a z-buffer, 0 at 0.3 m and 1 at 250 m"), "{told}");
-    // From -1 to 1, as OpenGL's: 0 lies between the planes, at 2 n f / (f + n).
+    // From -1 to 1, as OpenGL has them.
     let told = with(&|_, depth| f64::from(2.0 * (a + b / depth as f32) - 1.0)).expect("a reason");
-    assert!(told.contains("z-buffer, 0 at 0.59928 m and 1 at 250 m"), "{told}");
+    assert!(told.contains("z-buffer, -1 at 0.3 m and 1 at 250 m"), "{told}");
+    // A far plane of which single precision keeps two digits is told as the roundest number, and not as 996 m.
+    let (near, far) = (0.01_f32, 1000.0_f32);
+    let (a, b) = (far / (far - near), -far * near / (far - near));
+    let told = with(&|_, depth| f64::from(a + b / depth as f32)).expect("a reason");
+    assert!(told.contains("z-buffer, 0 at 0.01 m and 1 at 1000 m"), "{told}");
     // The same numbers with an error of a hundred last digits, up and down.
+    let (a, b) = (1.001, -0.3);
     let noise = with(&|index, depth| {
         let share = f64::from((index as u32).wrapping_mul(2_654_435_769) >> 8) / f64::from(1 << 24);
         f64::from(a + b / depth as f32) + 1.2e-5 * (share - 0.5)

@@ -448,7 +448,12 @@ fn pixels_otherwise(stated: [&Image<u32>; 2], [width, height]: [u32; 2]) -> Opti
 fn negative_lengths(reals: Reals<'_>, lengths: &Image<Maybe<f64>>, first: f64) -> String {
     let is_other = |cell: &Maybe<f64>| cell.get().is_some_and(|length| length < 0.0 && length != first);
     if lengths.cells().iter().any(is_other) {
-        "lengths are positive in the direction in which the sensor looks: a camera that looks along -z writes -z".into()
+        let is_positive = |cell: &Maybe<f64>| cell.get().is_some_and(|length| length > 0.0);
+        let looks = "lengths are positive in the direction in which the sensor looks";
+        match lengths.cells().iter().any(is_positive) {
+            true => format!("{looks}; numbers of a z-buffer, from -1 to 1, are no depths"),
+            false => format!("{looks}: a camera that looks along -z writes -z"),
+        }
     } else {
         declare_miss(first, reals.channel.storage)
     }

@@ -359,7 +359,7 @@ fn rounded(making: &mut Making<'_>, of: Length, quantum: f64, down: bool) -> Vec
 /// Depths as a z-buffer holds them, 0 and 1 at these.
 fn z_buffered(making: &mut Making<'_>, zero_at: f64, one_at: f64) -> Vec<Mistake> {
     making.lengths(Length::Depth, |_, _, x| (1.0 / zero_at - 1.0 / x) / (1.0 / zero_at - 1.0 / one_at));
-    vec![Mistake::ZBuffer { zero_at, one_at }]
+    vec![Mistake::ZBuffer { low: 0.0, low_at: zero_at, one_at }]
 }
 
 /// The nearest number of 11 significant bits.

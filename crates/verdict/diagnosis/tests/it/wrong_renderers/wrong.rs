@@ -133,8 +133,7 @@ fn is_alike<'m>(made: impl Iterator<Item = &'m [Mistake]> + Clone, reason: &Reas
     let has = |is: &dyn Fn(&Mistake) -> bool| made.clone().flatten().any(is);
     let is_whole = reason.explained == reason.wrong && reason.broken == 0;
     // Another unit is a factor, too.
-    let is_line =
-        |one: &Mistake| matches!(one, Mistake::Affine { of: Length::Range, .. } | Mistake::Unit(_));
+    let is_line = |one: &Mistake| matches!(one, Mistake::Affine { of: Length::Range, .. } | Mistake::Unit(_));
     let shifts = made.clone().filter_map(|all| all.iter().find_map(cells_off));
     match told {
         Mistake::Rounded { quantum, .. } if has(&|one| matches!(one, Mistake::HalfPrecision(_))) => {
