@@ -13,6 +13,9 @@ use crate::records::{MAX_LISTED, each_record};
 /// Maximum number of fields of a cloud.
 const MAX_FIELDS: u32 = 1024;
 
+/// Bytes of a point, at least: x, y and z.
+const MIN_POINT_BYTES: usize = 3;
+
 /// Which of a bag's clouds is meant.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct CloudChoice<'a> {
@@ -44,15 +47,15 @@ pub fn read_point_cloud(stream: impl Read, length: u64, choice: &CloudChoice<'_>
     found.only(choice)
 }
 
-/// The number of points of the largest cloud of an MCAP file of `length` bytes, by the words of its messages; `None` if it has none, or cannot
-/// be read.
+/// The number of points of the largest cloud of an MCAP file of `length` bytes, by the words of its messages, but of no more than their bytes can
+/// hold; `None` if it has none, or cannot be read.
 pub fn largest_point_cloud(stream: impl Read, length: u64) -> Option<u64> {
     let (mut clouds, mut largest) = (Clouds::default(), None);
     let read = each_record(stream, length, |record| {
         if let Some((_, data)) = clouds.take(record)
             && let Ok(points) = Cdr::new(&data).and_then(|mut cdr| size(&mut cdr))
         {
-            largest = largest.max(Some(points));
+            largest = largest.max(Some(points.min((data.len() / MIN_POINT_BYTES) as u64)));
         }
         Ok(())
     });

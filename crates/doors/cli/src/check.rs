@@ -1,6 +1,6 @@
 //! `raypencil check`: another program's answers against a reference pack.
 
-use raypencil::cast::{CloudChoice, CloudConventions, is_bag_of_clouds, is_cloud};
+use raypencil::cast::{CloudChoice, CloudConventions, is_bag_of_clouds, no_cloud};
 use raypencil::harness::{check_any_pack, pack_form};
 use raypencil::io::OutputFolder;
 use raypencil::pack::{Declarations, PackForm, Verification};
@@ -56,6 +56,7 @@ fn refuse_declared(command: &Check) -> Result<(), Trouble> {
     let pack = command.pack.display();
     let of_rays = command.arithmetic.is_some() || command.miss.is_some() || command.no_faces;
     let of_sensors = !command.declared.is_empty();
+    let of_bag = command.topic.is_some() || command.message.is_some();
     let usage = |text: String| Err(Trouble::Usage(text));
     match pack_form(&command.pack) {
         PackForm::Triangles if of_rays => usage(format!(
@@ -64,23 +65,25 @@ fn refuse_declared(command: &Check) -> Result<(), Trouble> {
         PackForm::Triangles if of_sensors => usage(format!(
             "--channel, --scale: {pack} is an input pack, which asks for triangles.npy; expected neither"
         )),
-        form if command.frame.is_some() && (form != PackForm::Rays || !is_cloud(&command.candidate)) => {
+        PackForm::Triangles | PackForm::Sensors if command.frame.is_some() && command.pack.exists() => {
             usage(format!(
-                "--frame: {} on {pack} is no point cloud (.pcd, .ply, .mcap) on a pack of rays; expected no --frame",
-                command.candidate.display()
+                "--frame: {pack} is no pack of rays, which alone takes point clouds; expected no --frame"
             ))
         }
-        form if (command.topic.is_some() || command.message.is_some())
-            && (form != PackForm::Rays || !is_bag_of_clouds(&command.candidate)) =>
-        {
-            usage(format!(
-                "--topic, --message: {} on {pack} is no bag (.mcap) on a pack of rays; expected neither",
-                command.candidate.display()
-            ))
-        }
+        PackForm::Triangles | PackForm::Sensors if of_bag && command.pack.exists() => usage(format!(
+            "--topic, --message: {pack} is no pack of rays, which alone takes bags; expected neither"
+        )),
         PackForm::Rays if of_sensors => usage(format!(
             "--channel, --scale: {pack} is a pack of rays, whose answers are NPY files of fixed names; expected neither"
         )),
+        PackForm::Rays if command.frame.is_some() || of_bag => match no_cloud(&command.candidate) {
+            Some(words) => usage(words),
+            None if of_bag && !is_bag_of_clouds(&command.candidate) => usage(format!(
+                "--topic, --message: {} is no bag (.mcap); expected neither",
+                command.candidate.display()
+            )),
+            None => Ok(()),
+        },
         PackForm::Triangles | PackForm::Rays | PackForm::Sensors => Ok(()),
     }
 }

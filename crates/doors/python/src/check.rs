@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use raypencil::cast::{CloudChoice, CloudConventions, CloudFrame, is_bag_of_clouds, is_cloud};
+use raypencil::cast::{CloudChoice, CloudConventions, CloudFrame, is_bag_of_clouds, no_cloud};
 use raypencil::harness::{CheckedPack, check_any_pack, pack_form};
 use raypencil::pack::{CheckError, Declarations, PackForm, Verification};
 
@@ -46,15 +46,20 @@ fn refuse_declared(question: &Question) -> Result<(), Failure> {
     let Question { pack, declared, candidate, frame, topic, message, .. } = question;
     let form = pack_form(pack);
     let pack = pack.display();
-    if frame.is_some() && (form != PackForm::Rays || !is_cloud(candidate)) {
+    let of_bag = topic.is_some() || message.is_some();
+    if (frame.is_some() || of_bag) && form != PackForm::Rays {
         return Err(Failure::new(format!(
-            "frame: {} on {pack} is no point cloud (.pcd, .ply, .mcap) on a pack of rays; expected no frame",
-            candidate.display()
+            "frame, topic, message: {pack} is no pack of rays, which alone takes point clouds; expected none of them"
         )));
     }
-    if (topic.is_some() || message.is_some()) && (form != PackForm::Rays || !is_bag_of_clouds(candidate)) {
+    if (frame.is_some() || of_bag)
+        && let Some(words) = no_cloud(candidate)
+    {
+        return Err(Failure::new(words));
+    }
+    if of_bag && !is_bag_of_clouds(candidate) {
         return Err(Failure::new(format!(
-            "topic, message: {} on {pack} is no bag (.mcap) on a pack of rays; expected neither",
+            "topic, message: {} is no bag (.mcap); expected neither",
             candidate.display()
         )));
     }

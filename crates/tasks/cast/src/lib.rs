@@ -67,8 +67,8 @@ pub use comparison::{
 pub use layout::PageScan;
 pub use pack::{
     AskedBy, CandidateConventions, CastGround, CloudConventions, CloudFacts, RayPackChecked, RayPackCounts,
-    check_ray_pack, check_stated_rays, is_bag_of_clouds, is_cloud, is_ray_pack, ray_pack_len, read_stated,
-    stated_points, write_ray_pack, write_scan_pack,
+    check_ray_pack, check_stated_rays, is_bag_of_clouds, is_cloud, is_ray_pack, no_cloud, ray_pack_len,
+    read_stated, stated_points, write_ray_pack, write_scan_pack,
 };
 pub use page::{CastPage, ComparedHits, write_cast_page};
 pub use range_picture::{range_picture, top_picture};

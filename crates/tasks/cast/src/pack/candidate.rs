@@ -9,7 +9,7 @@ use raypencil_scene::{FaceId, Side};
 
 use crate::cloud::CloudFrame;
 use crate::comparison::Stated;
-use crate::pack::clouds::is_bag_of_clouds;
+use crate::pack::clouds::bag_within;
 
 /// What a candidate declares of its point cloud.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -109,13 +109,6 @@ pub fn read_candidate(
         return Err(FileError::Array(fault.in_file(folder)));
     }
     Ok(stated)
-}
-
-/// The name of a bag in a folder, such as that of `ros2 bag record`.
-fn bag_within(folder: &Path) -> Option<String> {
-    let entries = std::fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path());
-    let bag = entries.filter(|path| is_bag_of_clouds(path)).min()?;
-    Some(bag.file_name()?.to_string_lossy().into_owned())
 }
 
 struct Reader<'a> {

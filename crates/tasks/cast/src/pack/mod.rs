@@ -24,7 +24,7 @@ mod write;
 
 pub use candidate::{CandidateConventions, CloudConventions, read_candidate as read_stated};
 pub use check::{AskedBy, CastGround, RayPackChecked, check_ray_pack, check_stated_rays};
-pub use clouds::{CloudFacts, is_bag_of_clouds, is_cloud, stated_points};
+pub use clouds::{CloudFacts, is_bag_of_clouds, is_cloud, no_cloud, stated_points};
 pub use read::{is_ray_pack, ray_pack_len};
 pub use write::{RayPackCounts, write_ray_pack, write_scan_pack};
 

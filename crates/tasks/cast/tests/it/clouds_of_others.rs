@@ -463,6 +463,20 @@ fn lengths_that_are_no_ranges_are_told() {
         .map(|(one, ray)| Point { range: one.range * level(ray.direction), ..*one })
         .collect();
     trial.expect_why(&in_field, Fields::Range, sensor, "the field range holds the level distance");
+    // The field alone, beside points that are right.
+    let field = |change: fn(f64) -> f64| -> Vec<Point> {
+        right.iter().map(|one| Point { range: change(one.range), ..*one }).collect()
+    };
+    for (change, words) in [
+        (
+            (|range| range * 1000.0) as fn(f64) -> f64,
+            "agree if the field range is in thousandths of the mesh's unit",
+        ),
+        (|range| range * 1.01, "agree if the field range is 1.01 times what it is"),
+        (|range| range + 0.5, "agree if the field range is 0.5 too long"),
+    ] {
+        trial.expect_why(&field(change), Fields::Range, sensor, words);
+    }
 }
 
 #[test]
@@ -742,7 +756,7 @@ fn a_cloud_of_a_bag_is_judged_as_that_of_a_file() {
             "field `z`: 1 x 8 bytes at 15; expected an end within the 22 bytes",
         ),
         (|cloud| cloud.row_step = 351, "row_step: 351 bytes; expected 16 points of 22 bytes, or more"),
-        (|cloud| drop(cloud.data.0.pop()), "data: 42839 bytes; expected 120 rows of 357 bytes"),
+        (|cloud| cloud.data.0.truncate(42_839), "data: 42839 bytes; expected 120 rows of 357 bytes"),
         (
             |cloud| cloud.width = u32::MAX,
             "row_step: 357 bytes; expected 4294967295 points of 22 bytes, or more",

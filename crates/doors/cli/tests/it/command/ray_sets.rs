@@ -352,7 +352,7 @@ fn clouds_of_cast_are_right_in_their_own_frame_and_told_in_another() {
     );
     assert_trouble(
         &raypencil(folder.path(), &["check", "pack", "cast/cloud.pcd", "--message", "1"]),
-        &["--topic, --message", "cast/cloud.pcd", "is no bag (.mcap)"],
+        &["--topic, --message: cast/cloud.pcd is no bag (.mcap); expected neither"],
     );
     assert_trouble(
         &raypencil(folder.path(), &["--max-memory", "10MB", "check", "pack", bag]),
@@ -372,7 +372,16 @@ fn clouds_of_cast_are_right_in_their_own_frame_and_told_in_another() {
     );
     assert_trouble(
         &raypencil(folder.path(), &["check", "pack", "cast", "--frame", "mesh"]),
-        &["--frame", "no point cloud"],
+        &["cast is no point cloud (.pcd, .ply, .mcap)"],
+    );
+    // A bag's folder, a pack that is not there, and a pack that takes no clouds.
+    assert_trouble(
+        &raypencil(folder.path(), &["check", "pack", "cast/rosbag", "--frame", "sensor"]),
+        &["cast/rosbag is no point cloud", "give rosbag_0.mcap in it"],
+    );
+    assert_trouble(
+        &raypencil(folder.path(), &["check", "nothing", "cast/cloud.pcd", "--frame", "mesh"]),
+        &["nothing"],
     );
     at("rays.csv", "0,0,0, 1,0,0\n");
     screen(folder.path(), &["pack", "prism.obj", "--rays", "rays.csv", "-o", "rays"], 0);

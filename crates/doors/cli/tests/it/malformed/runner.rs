@@ -31,6 +31,7 @@ pub struct Run {
     /// Files that the run created or deleted.
     pub changed: Vec<String>,
     /// Processor time and memory.
+    #[allow(dead_code, reason = "the example `hostile_inputs` reads it")]
     pub used: ResUse,
 }
 

@@ -20,6 +20,35 @@ pub fn is_cloud(path: &Path) -> bool {
     is_cloud_file(path) || is_bag_of_clouds(path)
 }
 
+/// What is wrong with a file that should be a cloud, by its name alone; `None`: it may be one.
+///
+/// ```
+/// use raypencil_cast::no_cloud;
+///
+/// assert_eq!(no_cloud("mine.pcd".as_ref()), None);
+/// let words = no_cloud("mine_0.db3".as_ref()).expect("words");
+/// assert!(words.starts_with("mine_0.db3 is no point cloud (.pcd, .ply, .mcap): `ros2 bag convert`"));
+/// ```
+pub fn no_cloud(path: &Path) -> Option<String> {
+    if is_cloud(path) {
+        return None;
+    }
+    let of_bag = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("db3"));
+    let help = match bag_within(path) {
+        Some(bag) => format!(": give {bag} in it"),
+        None if of_bag => ": `ros2 bag convert` makes MCAP of a bag in SQLite".into(),
+        None => String::new(),
+    };
+    Some(format!("{} is no point cloud (.pcd, .ply, .mcap){help}", path.display()))
+}
+
+/// The name of a bag in a folder, such as that of `ros2 bag record`.
+pub(in crate::pack) fn bag_within(folder: &Path) -> Option<String> {
+    let entries = std::fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path());
+    let bag = entries.filter(|path| is_bag_of_clouds(path)).min()?;
+    Some(bag.file_name()?.to_string_lossy().into_owned())
+}
+
 /// The number of points that a file says it has, before anything is made of them, and of a bag that of its largest cloud; `None` if it names none,
 /// or the file cannot be read.
 pub fn stated_points(path: &Path) -> Option<u64> {

@@ -18,7 +18,8 @@ mod read;
 mod rules;
 mod turn;
 
-pub use file::{is_bag_of_clouds, is_cloud, stated_points};
+pub(super) use file::bag_within;
+pub use file::{is_bag_of_clouds, is_cloud, no_cloud, stated_points};
 pub(super) use mistakes::of_cloud;
 pub use read::CloudFacts;
 pub(super) use read::{CloudCase, read_cloud_of};
