@@ -36,7 +36,11 @@ fn passes(run: &DriveRun) -> String {
         return String::new();
     }
     let verb = if passed == 1 { "passes" } else { "pass" };
-    format!("; {} of {} {verb} an obstacle", count(passed), counted(sectors, "sector", "sectors"))
+    // Who measures nothing passes nothing.
+    let [_, (_, unknown), _] = sector_counts(run);
+    let ends =
+        if unknown == sectors { format!(", all {} end unknown", count(sectors)) } else { String::new() };
+    format!("; {} of {} {verb} an obstacle{ends}", count(passed), counted(sectors, "sector", "sectors"))
 }
 
 /// Facts of a drive: each a name and its words.

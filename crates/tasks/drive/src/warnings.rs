@@ -52,9 +52,12 @@ fn allowed(plan: &DrivePlan) -> [f64; 2] {
 fn steep_words(plan: &DrivePlan, steepness: [f64; 2]) -> String {
     let degrees = |slope: f64| libm::atan(slope).to_degrees();
     let ([along, across], [most_along, most_across]) = (steepness.map(degrees), allowed(plan).map(degrees));
+    // Whole degrees, but where the one that is too steep is less than one beyond its limit.
+    let is_near = |slope: f64, most: f64| (0.0..1.0).contains(&(slope - most));
+    let places = usize::from(is_near(along, most_along) || is_near(across, most_across));
     format!(
-        "{along:.0} degrees along its length and {across:.0} across, where its own tests allow {most_along:.0} and \
-         {most_across:.0}"
+        "{along:.places$} degrees along its length and {across:.places$} across, where its own tests allow \
+         {most_along:.places$} and {most_across:.places$}"
     )
 }
 
