@@ -305,8 +305,7 @@ pub fn drive_with(
         stages.push(Stage { name: "comparing".into(), time: comparing });
     }
     stages.push(Stage { name: "what the vehicle can truly pass".into(), time: judging });
-    stages.push(Stage { name: "views for figures".into(), time: drawing });
-    stages.push(Stage { name: "looking at the scene".into(), time: looking });
+    stages.push(Stage { name: "views for figures, warnings".into(), time: drawing + looking });
     Ok(DriveRun {
         last_view,
         animation,
