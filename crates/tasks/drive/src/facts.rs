@@ -35,12 +35,13 @@ fn passes(run: &DriveRun) -> String {
     if sectors == 0 {
         return String::new();
     }
-    let verb = if passed == 1 { "passes" } else { "pass" };
-    // Who measures nothing passes nothing.
+    // Who measures nothing passes nothing: that is no success.
     let [_, (_, unknown), _] = sector_counts(run);
-    let ends =
-        if unknown == sectors { format!(", all {} end unknown", count(sectors)) } else { String::new() };
-    format!("; {} of {} {verb} an obstacle{ends}", count(passed), counted(sectors, "sector", "sectors"))
+    if passed == 0 && unknown == sectors {
+        return format!("; all {} end unknown", counted(sectors, "sector", "sectors"));
+    }
+    let verb = if passed == 1 { "passes" } else { "pass" };
+    format!("; {} of {} {verb} an obstacle", count(passed), counted(sectors, "sector", "sectors"))
 }
 
 /// Facts of a drive: each a name and its words.

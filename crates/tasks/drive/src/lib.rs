@@ -42,7 +42,7 @@
 //! let job = DriveJob::new(&load_text(scene, "small")?, None, "small.toml".into())?;
 //! let run = drive(&job, &[&Scanline::default()], &Silent)?;
 //! // 0.6 m at 0.3 m/s take 2 s: 7 frames at 3 per second, both ends included.
-//! assert!(drive_document(&job, &run).screen().ends_with("\n7 frames driven; 0 of 31 sectors pass an obstacle.\n"));
+//! assert!(drive_document(&job, &run).screen().ends_with("\n7 frames driven; all 31 sectors end unknown.\n"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

@@ -48,7 +48,7 @@ fn allowed(plan: &DrivePlan) -> [f64; 2] {
     [limits.length, limits.front.min(limits.rear)]
 }
 
-/// "17 degrees along its length and 0 across, where its own tests allow 16 and 19".
+/// "25 degrees along its length and 0 across, where its own tests allow 16 and 19".
 fn steep_words(plan: &DrivePlan, steepness: [f64; 2]) -> String {
     let degrees = |slope: f64| libm::atan(slope).to_degrees();
     let ([along, across], [most_along, most_across]) = (steepness.map(degrees), allowed(plan).map(degrees));
@@ -142,7 +142,7 @@ mod tests {
         assert_eq!((said(0.28, 0.0), said(0.0, -0.33)), (None, None));
         let along = said(-0.29, 0.0).unwrap();
         assert!(
-            along.contains("17 degrees along its length and 0 across") && along.contains("16 and 19"),
+            along.contains("16.6 degrees along its length and 0.0 across") && along.contains("16.3 and 19.3"),
             "{along}"
         );
         assert!(said(0.0, 0.96).unwrap().contains("0 degrees along its length and 55 across"));
