@@ -60,4 +60,4 @@ def test_a_pack_takes_its_old_names(monkeypatch: pytest.MonkeyPatch) -> None:
             "pack: bench is now no_bench, with the opposite value",
         ]
         pack(scene, "out", no_bench=not bench, pack_version="2.1")
-    assert asked == [("out", True, "2.1", None, None)] * 2 + [("out", False, "2.1", None, None)] * 2
+    assert asked == [("out", True, "2.1", None, False, None)] * 2 + [("out", False, "2.1", None, False, None)] * 2

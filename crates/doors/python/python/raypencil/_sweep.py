@@ -129,16 +129,17 @@ def sweep(
     names = with_.split(",") if isinstance(with_, str) else list(with_)
     folder = os.fspath(output)
     source, of_scene = _source(scene, folder)
-    of_text = isinstance(scene, Scene) and scene._is_text
+    # The text of a scene that no file has: a file of it is written beside the records.
+    text = scene._source if isinstance(scene, Scene) and scene._is_text else None
     swept = {key for keys, _ in axes for key in keys}
     # Of two settings of one key the last holds.
     axes = [([key], [[value]]) for key, value in dict(of_scene).items() if key not in swept] + axes
-    if of_text or Path(source).exists():
+    if text is not None or Path(source).exists():
         source = os.path.abspath(source)
     shared = _raypencil.SharedCore(folder, force, (source, do))
     try:
-        if of_text:
-            store({os.path.basename(source): scene._source.encode()}, folder)
+        if text is not None:
+            store({os.path.basename(source): text.encode()}, folder)
         return _swept((source, axes, do, names, as_printed), folder, charts, (shards, client, retries, progress))
     finally:
         shared.release()
