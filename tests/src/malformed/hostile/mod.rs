@@ -51,8 +51,11 @@ impl Family {
     }
 }
 
+/// The name of a family, and what makes it for a program that writes this into its results.
+pub type NamedFamily = (&'static str, fn(&Value) -> Family);
+
 /// All families by what they are, each made when it is asked for, for a program that writes `campaign` into its results.
-pub fn families() -> [(&'static str, fn(&Value) -> Family); 16] {
+pub fn families() -> [NamedFamily; 16] {
     [
         ("results of campaigns, re-sealed", campaign_records),
         ("results of campaigns, byte by byte", sealed_campaigns),
@@ -80,7 +83,7 @@ pub fn seeds() -> Vec<(&'static str, String, Vec<u8>)> {
         let kind = ["stl", "obj", "ply"].iter().position(|one| *one == ending).expect("a mesh format") as u8;
         // As `fuzz/fuzz_targets/terrain.rs` reads it: axes and scale of the file, and others.
         for choice in [kind, kind + 5 + 15, kind + 10 + 30] {
-            seeds.push(("terrain", format!("{ending}-{at}-{choice}"), [&[choice], &bytes[..]].concat()));
+            seeds.push(("terrain", format!("{ending}-{at}-{choice}"), [&[choice], bytes].concat()));
         }
     }
     seeds.push(("terrain", "gltf".into(), [&[3], &super::glb::good()[..]].concat()));
