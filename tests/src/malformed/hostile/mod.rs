@@ -83,7 +83,7 @@ pub fn seeds() -> Vec<(&'static str, String, Vec<u8>)> {
         let kind = ["stl", "obj", "ply"].iter().position(|one| *one == ending).expect("a mesh format") as u8;
         // As `fuzz/fuzz_targets/terrain.rs` reads it: axes and scale of the file, and others.
         for choice in [kind, kind + 5 + 15, kind + 10 + 30] {
-            seeds.push(("terrain", format!("{ending}-{at}-{choice}"), [&[choice], bytes].concat()));
+            seeds.push(("terrain", format!("{ending}-{at}-{choice}"), [&[choice], &bytes[..]].concat()));
         }
     }
     seeds.push(("terrain", "gltf".into(), [&[3], &super::glb::good()[..]].concat()));
@@ -91,7 +91,7 @@ pub fn seeds() -> Vec<(&'static str, String, Vec<u8>)> {
     for (name, bytes) in sealed::good() {
         // As `fuzz/fuzz_targets/sweep.rs` reads it.
         for choice in [0, 1] {
-            seeds.push(("sweep", format!("{name}-{choice}"), [&[choice], &bytes[..]].concat()));
+            seeds.push(("sweep", format!("{name}-{choice}"), [&[choice], bytes].concat()));
         }
     }
     for (at, text) in settings::good().into_iter().enumerate() {
