@@ -472,6 +472,7 @@ fn lengths_that_are_no_ranges_are_told() {
             (|range| range * 1000.0) as fn(f64) -> f64,
             "agree if the field range is in thousandths of the mesh's unit",
         ),
+        (|range| range / 0.3048, "agree if the field range is in feet"),
         (|range| range * 1.01, "agree if the field range is 1.01 times what it is"),
         (|range| range + 0.5, "agree if the field range is 0.5 too long"),
     ] {

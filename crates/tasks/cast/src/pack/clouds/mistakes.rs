@@ -396,31 +396,45 @@ fn of_axes(list: &mut List<'_>) {
     }
 }
 
+/// Units of the field `range`: numbers for one of the mesh's unit, and words.
+const UNITS_OF_RANGE: [(f64, &str); 4] = [
+    (1000.0, "thousandths of the mesh's unit"),
+    (100.0, "hundredths of the mesh's unit"),
+    (0.001, "thousands of the mesh's unit"),
+    (1.0 / 0.3048, "feet"),
+];
+
 /// A factor and a length by which the field `range` alone is off, beside points that are right.
 fn estimate_field(list: &mut List<'_>, trial: &Trial, range_of: &dyn Fn(&CastRay) -> Option<f64>) {
     let Some(field) = &trial.stated.range else { return };
     let every = trial.rays.len().div_ceil(MAX_FITTED).max(1);
     let some = (0..trial.rays.len()).step_by(every).filter(|&k| field[k].is_finite());
     let pairs: Vec<(f64, f64)> = some.filter_map(|k| Some((field[k], range_of(&trial.rays[k])?))).collect();
-    let found =
-        |of: fn(&(f64, f64)) -> f64| median(pairs.iter().map(of).collect()).map_or_else(Vec::new, rounded);
-    for by in found(|(stated, exact)| stated - exact) {
+    let middle = |of: fn(&(f64, f64)) -> f64| median(pairs.iter().map(of).collect());
+    let (Some(offset), Some(factor)) =
+        (middle(|(stated, exact)| stated - exact), middle(|(stated, exact)| stated / exact))
+    else {
+        return;
+    };
+    for by in rounded(offset) {
         let way = if by > 0.0 { "long" } else { "short" };
         list.add(format!("the field range is {} too {way}", by.abs()), false, move |trial| {
             trial.stated.range.iter_mut().flatten().for_each(|range| *range -= by);
         });
     }
-    for by in found(|(stated, exact)| stated / exact).into_iter().filter(|by| *by > 0.0 && *by != 1.0) {
-        let of_unit = [(1000.0, "thousandths"), (100.0, "hundredths"), (0.001, "thousands")];
-        let words = match of_unit.iter().find(|(factor, _)| *factor == by) {
-            Some((_, unit)) => format!("the field range is in {unit} of the mesh's unit"),
-            None => format!("the field range is {by} times what it is"),
-        };
+    let mut add_factor = |words: String, by: f64| {
         list.add(words, false, move |trial| {
             let stated = &mut trial.stated;
             let numbers = [&mut stated.range, &mut stated.range_error].into_iter().flatten().flatten();
             numbers.for_each(|number| *number /= by);
         });
+    };
+    // A unit is told as such, with its own factor.
+    if let Some((by, unit)) = UNITS_OF_RANGE.iter().find(|(by, _)| (factor / by - 1.0).abs() < 1e-5) {
+        return add_factor(format!("the field range is in {unit}"), *by);
+    }
+    for by in rounded(factor).into_iter().filter(|by| *by > 0.0 && *by != 1.0) {
+        add_factor(format!("the field range is {by} times what it is"), by);
     }
 }
 
