@@ -160,6 +160,7 @@ malformed-inputs:
 
 # Every malformed input, each in a process of its own: docs/evidence/hostile-inputs.md
 hostile-inputs:
+    mkdir -p out
     cargo build --release -p raypencil-cli --bin raypencil
     cargo run --release -p raypencil-cli --features examples --example hostile_inputs > out/hostile-inputs.md
     mv out/hostile-inputs.md docs/evidence/hostile-inputs.md
