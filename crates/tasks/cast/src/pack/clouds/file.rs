@@ -20,7 +20,7 @@ pub fn is_cloud(path: &Path) -> bool {
     is_cloud_file(path) || is_bag_of_clouds(path)
 }
 
-/// What is wrong with a file that should be a cloud, by its name alone; `None`: it may be one.
+/// What is wrong with a file that should be a cloud, by its name, and of a folder by the bag in it; `None`: it may be one.
 ///
 /// ```
 /// use raypencil_cast::no_cloud;
