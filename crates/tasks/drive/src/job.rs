@@ -107,6 +107,7 @@ fn in_keys(error: SceneError) -> SceneError {
         }
         ["drive", "grid", name @ ("first" | "step" | "last")] => format!("drive.grid_{name}_m"),
         ["drive", "times", "row_time"] => "drive.row_time_us".into(),
+        ["drive", "times", "duration"] => "drive.electronics.exposure_ms".into(),
         ["drive", "map", "points"] => "drive.map_points".into(),
         ["drive", "truth", "centre_of_mass", _] => "drive.true_centre_of_mass_m".into(),
         ["drive", "route", waypoint] if waypoint.starts_with("waypoints[") => {

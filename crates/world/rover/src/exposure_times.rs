@@ -132,13 +132,22 @@ impl ExposureTimes {
             check_count(|| format!("{field}.bands"), self.bands.into(), 1, most)?;
         }
         let rolling = self.row_time * f64::from(height.saturating_sub(1));
-        if rolling > frame_time * (1.0 + 1e-9) {
+        let takes = self.duration + rolling;
+        let is_long = |time: f64, limit: f64| time > limit * (1.0 + 1e-9);
+        if is_long(rolling, frame_time) {
             let value = format!("{} s, thus {rolling} s for {height} rows", self.row_time);
             let expected = format!("all rows within the {frame_time} s of a frame");
             return Err(SceneError::new(format!("{field}.row_time"), value, expected));
         }
+        // Along the way of an exposure that is longer than a frame the vehicle would be at two places at once.
+        if !self.is_at_once() && is_long(takes, frame_time) {
+            let rows =
+                if rolling > 0.0 { format!(", and {rolling} s for {height} rows") } else { String::new() };
+            let value = format!("{} s{rows}", self.duration);
+            let expected = format!("an exposure within the {frame_time} s of a frame");
+            return Err(SceneError::new(format!("{field}.duration"), value, expected));
+        }
         // An image is exposed and read out before the next one: another beam is lit then.
-        let takes = self.duration + rolling;
         if self.interval > 0.0 && self.interval < takes * (1.0 - 1e-9) {
             let expected = format!("0, or at least the duration of an exposure, {takes} s");
             return Err(SceneError::new(

@@ -293,6 +293,14 @@ fn errors_of_several_keys_together_name_the_keys() {
             "drive.map_points is 201, which reach 10 m from the middle: expected ",
         ),
         ("row_time_us = 5e5", "drive.row_time_us is 0.5 s, thus "),
+        (
+            "motion_blur_samples = 2\nelectronics = { exposure_ms = 334 }",
+            "drive.electronics.exposure_ms is 0.334 s: expected an exposure within the 0.333",
+        ),
+        (
+            "row_time_us = 100\nelectronics = { exposure_ms = 333 }",
+            "drive.electronics.exposure_ms is 0.333 s, and 0.0",
+        ),
         ("true_centre_of_mass_m = [0.7, 0, 1]", "drive.true_centre_of_mass_m is 0.7: expected -0.6 to 0.6 m"),
         (
             "true_centre_of_mass_m = [0, -0.6, 1]",
@@ -301,6 +309,18 @@ fn errors_of_several_keys_together_name_the_keys() {
     ] {
         let error = DriveJob::new(&small(keys, ""), None, "small.toml".into()).unwrap_err().to_string();
         assert!(error.starts_with(message), "{error}");
+    }
+}
+
+#[test]
+fn an_exposure_as_long_as_a_frame_is_taken() {
+    // 3 frames a second.
+    for keys in [
+        "motion_blur_samples = 2\nelectronics = { exposure_ms = 333.3 }",
+        // All is at once: the paper has no word of how long an exposure takes.
+        "electronics = { exposure_ms = 334 }",
+    ] {
+        assert!(DriveJob::new(&small(keys, ""), None, "small.toml".into()).is_ok(), "{keys}");
     }
 }
 

@@ -60,14 +60,14 @@ fn both_sides_agree_on_a_moving_vehicle() {
 
 #[test]
 fn the_sunlight_of_a_rolling_shutter_is_that_of_each_row() {
-    // A plane behind a wall, as above, seen at 1.2 m/s. 128 rows, 1.9 ms apart: row j is seen 1.2 x 1.9 mm x j farther on, the last
-    // one 0.29 m. With all rows at once the wall's upper edge is seen in row 64.6; from 0.147 m farther on, where the vehicle is
-    // for row 64.6, in row 66.6.
+    // A dark wall 2.2 m wide stands across sunny ground at x = 3 m, 2.7 m before the camera, and grows as the vehicle nears it. 128 rows,
+    // 1.9 ms apart, at 1.2 m/s: row j sees it from 1.2 x 1.9 mm x j nearer. A mean over all rows would see it from 0.145 m
+    // nearer in each row: 2.5 columns wider in row 34, and 1.3 narrower in row 80.
     let p = DVec3::new;
     let ground = [p(-30.0, -30.0, 0.0), p(30.0, -30.0, 0.0), p(30.0, 30.0, 0.0), p(-30.0, 30.0, 0.0)];
-    let wall = [p(3.0, -9.0, 0.0), p(3.0, 9.0, 0.0), p(3.0, 9.0, 0.5), p(3.0, -9.0, 0.5)];
+    let wall = [p(3.0, -1.1, 0.0), p(3.0, 1.1, 0.0), p(3.0, 1.1, 3.0), p(3.0, -1.1, 3.0)];
     let walled = mesh(&[ground, wall].concat(), vec![[0, 1, 2], [0, 2, 3], [4, 6, 5], [4, 7, 6]]);
-    let first_dark = |more: &str| {
+    let widths = |more: &str| {
         let keys =
             MOVING.replace("subtract_unlit = true\n", "").replace("\nexposure_interval_ms = 250", more);
         let mut job = filtered(&keys);
@@ -76,22 +76,27 @@ fn the_sunlight_of_a_rolling_shutter_is_that_of_each_row() {
         let renderer = Tracer::new();
         let mut drive = RendererDrive::new(&job, &renderer, sun.as_ref()).unwrap();
         let image = drive.step(false, &mut |_, _| {}).unwrap().unwrap().images.swap_remove(0).1;
-        // Ground before the wall's top is bright, the wall below it dark; above the ground is the sky.
-        let first = (60..128).find(|&j| image.at(64, j) < image.at(64, j - 1) / 2).unwrap();
-        // Two rows beside the edge all is bright or dark. This does not tell bands from a mean over all places, which passes it too.
-        let [bright, dark, before, next] = [61, 72, first - 2, first + 1].map(|j| image.at(64, j));
-        let tenth = (bright - dark) / 10;
-        assert!(bright - before < tenth && next - dark < tenth, "{bright} {before} {next} {dark}");
-        first
+        // The ground at both sides is bright.
+        [34, 80].map(|j| (0..128).filter(|&i| 2 * image.at(i, j) < image.at(0, j)).count() as f64)
     };
-    // Row 64 holds the edge and row 65 is all wall.
-    let still = first_dark("");
-    let rolling = first_dark("\nrow_time_us = 1900\nrow_bands = 64");
-    let row = |x: f64| 64.0 + 8e-3 / 72e-6 * libm::tan(libm::atan2(1.0, 2.7 - x) - 20.0_f64.to_radians());
-    // The edge is in the row j where the vehicle is at 1.2 x 1.9 mm x j.
-    let expected = (0..128).find(|&j| f64::from(j) > row(1.2 * 1.9e-3 * f64::from(j))).unwrap();
-    assert!(still.abs_diff(row(0.0).ceil() as u32) <= 1, "{still}");
-    assert!(rolling.abs_diff(expected) <= 1 && rolling >= still + 2, "{rolling} {expected} {still}");
+    // The camera stands 1.5 m high and looks 20 degrees down. A row looks `below` the horizon, and its point of the wall has the depth
+    // d cos(below - 20 degrees) / cos(below).
+    let width = |d: f64, j: f64| {
+        let in_image = libm::atan2((j + 0.5 - 64.0) * 72e-6, 8e-3);
+        let below = in_image + 20.0_f64.to_radians();
+        2.2 * 8e-3 / 72e-6 * libm::cos(below) / (d * libm::cos(in_image))
+    };
+    let at = |advance: [f64; 2]| [width(2.7 - advance[0], 34.0), width(2.7 - advance[1], 80.0)];
+    let step = 1.2 * 1.9e-3;
+    let rolling_at = at([34.0 * step, 80.0 * step]);
+    let still_at = at([0.0; 2]);
+    assert!((rolling_at[0] - 96.1).abs() < 0.1 && (rolling_at[1] - 86.3).abs() < 0.1, "{rolling_at:?}");
+    // Two edges, each half a cell off at most.
+    let is_near = |seen: [f64; 2], expected: [f64; 2]| (0..2).all(|k| (seen[k] - expected[k]).abs() <= 1.0);
+    let still = widths("");
+    assert!(is_near(still, still_at), "{still:?} {still_at:?}");
+    let rolling = widths("\nrow_time_us = 1900\nrow_bands = 64");
+    assert!(is_near(rolling, rolling_at), "{rolling:?} {rolling_at:?}");
 }
 
 #[test]

@@ -156,6 +156,7 @@ impl Source<'_> {
         if let Some(keys) = &keys.electronics {
             self.electronics(keys, &mut drive.sensor)?;
         }
+        self.threshold_is_reached(keys, &drive)?;
         drive.has_camera |= keys.optics.is_some()
             || keys.electronics.is_some()
             || keys.sun.is_some()
@@ -309,6 +310,27 @@ impl Source<'_> {
         ];
         self.choice(&keys.place, "drive.place", &mut extraction.place, &places)?;
         self.integer(&keys.least_rows, "drive.least_rows", &mut extraction.least_rows, 1..=1_000_000, "")
+    }
+
+    /// A pixel is bright above the threshold: the camera's largest number must be.
+    fn threshold_is_reached(&self, keys: &DriveKeys, drive: &DriveSetup) -> Result<(), SceneIoError> {
+        let Some(threshold) = &keys.threshold_dn else { return Ok(()) };
+        let of_converter = 2.0_f64.powi(drive.sensor.bits as i32) - 1.0;
+        let (largest, less) = if drive.subtract_unlit {
+            (of_converter - drive.sensor.bias, ", less the bias")
+        } else {
+            (of_converter, "")
+        };
+        if *threshold.get_ref() < largest {
+            return Ok(());
+        }
+        let message = format!(
+            "`drive.threshold_dn` is {}; expected less than {largest}, the largest number of the camera's {} bits{less}: no \
+             pixel would be bright",
+            threshold.get_ref(),
+            drive.sensor.bits
+        );
+        Err(self.error(threshold.span(), message))
     }
 
     fn vehicle_lengths(&self, keys: &DriveKeys, vehicle: &mut Vehicle) -> Result<(), SceneIoError> {

@@ -439,6 +439,16 @@ fn a_drive_names_its_keys() {
         "detection = \"otsu\"\nthreshold_dn = 3",
         "`drive.threshold_dn` is given; expected none with detection = \"otsu\"",
     );
+    both(
+        "sensor = \"ccd_1989\"\nthreshold_dn = 255",
+        "`drive.threshold_dn` is 255; expected less than 255, the largest number of the camera's 8 bits: no pixel would be \
+         bright",
+    );
+    both(
+        "sensor = \"cmos\"\nthreshold_dn = 5000",
+        "`drive.threshold_dn` is 5000; expected less than 4095, the largest number of the camera's 12 bits: no pixel would be \
+         bright",
+    );
     both("scans = false\nscan_steps = 3", "a scan's number beside `scans = false`; expected one of the two");
     both("scans = false\nscan_to_deg = 3", "a scan's number beside `scans = false`; expected one of the two");
     both("grid_first_m = 2\ngrid_last_m = 1", "`drive.grid_last_m` is 1; expected `grid_first_m` or more, 2");
