@@ -43,6 +43,11 @@ pub(crate) fn hit_quantity(quantity: Quantity) -> Option<HitQuantity> {
 }
 
 impl Channel {
+    /// Whether it says what a ray hits.
+    pub(crate) fn is_of_hit(self) -> bool {
+        self.item.quantity == Quantity::Face || hit_quantity(self.item.quantity).is_some()
+    }
+
     /// The beam of a flux or a return.
     pub(crate) fn beam(self) -> Option<usize> {
         match (self.sensor, self.item.beam) {

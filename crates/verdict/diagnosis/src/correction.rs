@@ -61,12 +61,16 @@ impl Correction {
             Mistake::AxesYUp
             | Mistake::AxesYUpInverse
             | Mistake::Axes { of: Vectors::Both, .. }
-            | Mistake::SensorFrame => matches!(hit, Some(H::Point | H::Normal)),
-            Mistake::Axes { of: Vectors::Points, .. } => hit == Some(H::Point),
-            Mistake::Axes { of: Vectors::Normals, .. } => hit == Some(H::Normal),
-            Mistake::GlobalFrame | Mistake::PointsFromSensor | Mistake::PointsMoved(_) => {
-                hit == Some(H::Point)
-            }
+            | Mistake::SensorFrame { of: Vectors::Both, .. } => matches!(hit, Some(H::Point | H::Normal)),
+            Mistake::Axes { of: Vectors::Normals, .. }
+            | Mistake::SensorFrame { of: Vectors::Normals, .. } => hit == Some(H::Normal),
+            Mistake::Axes { of: Vectors::Points, .. }
+            | Mistake::SensorFrame { of: Vectors::Points, .. }
+            | Mistake::GlobalFrame
+            | Mistake::PointsFromSensor
+            | Mistake::PointsMoved(_)
+            | Mistake::PointsRounded(_) => hit == Some(H::Point),
+            Mistake::DistanceForView => quantity == Quantity::CameraDepth,
             Mistake::NormalsReversed | Mistake::NormalsNotUnit => hit == Some(H::Normal),
             Mistake::CosinesNegated | Mistake::AngleForCosine(_) => is_cosine,
             Mistake::CosinesExchanged(_) => is_cosine && channel.sensor != SensorId::Camera,
@@ -120,7 +124,7 @@ impl Correction {
             Mistake::AxesYUp
             | Mistake::AxesYUpInverse
             | Mistake::Axes { .. }
-            | Mistake::SensorFrame
+            | Mistake::SensorFrame { .. }
             | Mistake::PointsFromSensor
             | Mistake::PointsMoved(_)
             | Mistake::GlobalFrame => 6,
@@ -162,6 +166,17 @@ impl Correction {
         )
     }
 
+    /// Whether it says something of points and of normals: without one of them it is said of the other alone.
+    pub(crate) fn is_of_both_vectors(&self) -> bool {
+        matches!(self.mistake, Mistake::SensorFrame { of: Vectors::Both, .. })
+    }
+
+    /// Whether it says something of what the rays hit, and so must be true of each of these channels: a row of lost hits is no shift of the
+    /// faces alone, beside ranges that stand where they should.
+    pub(crate) fn is_of_all_hits(&self) -> bool {
+        matches!(self.mistake, Mistake::Shifted { .. })
+    }
+
     /// The cell in which the ray of `place` stands; `None` if no cell has it.
     pub(crate) fn source(&self, case: Case<'_>, place: Place) -> Option<Place> {
         let Place { sensor, i, j } = place;
@@ -196,6 +211,7 @@ impl Correction {
             return if self.is_miss(case, source) { Value::Nothing } else { value };
         }
         if let Mistake::Rounded { .. }
+        | Mistake::PointsRounded(_)
         | Mistake::HalfPrecision(_)
         | Mistake::ZBuffer { .. }
         | Mistake::Cut { .. }
@@ -251,6 +267,14 @@ impl Correction {
             Mistake::FromPlane(_) if channel.item.quantity == Quantity::Range => number + length(),
             Mistake::FromPlane(_) => number + axis,
             Mistake::CosinesNegated => -number,
+            Mistake::DistanceForView => {
+                // The cosine of the angle off the camera's axis is the depth over the distance.
+                let item = Item::from(Quantity::CosOffAxis);
+                match (Channel { item, ..channel }).at(case.truth.answers(), place) {
+                    Value::Number(cosine) => number * cosine,
+                    _ => f64::NAN,
+                }
+            }
             Mistake::Inverse(_) => 1.0 / number,
             Mistake::Squared(_) => number.sqrt(),
             Mistake::AngleForCosine(unit) => unit.cosine(number),
@@ -308,8 +332,10 @@ impl Correction {
             Mistake::AxesYUp => turned([0, 2, 1], [1, -1, 1]),
             Mistake::AxesYUpInverse => turned([0, 2, 1], [1, 1, -1]),
             Mistake::Axes { from, sign, .. } => turned(from, sign),
-            Mistake::SensorFrame if is_point => pose() * vector,
-            Mistake::SensorFrame => pose().rotate(vector),
+            Mistake::SensorFrame { axes, .. } => {
+                let optical = DVec3::from_array(axes.to_optical(stated));
+                if is_point { pose() * optical } else { pose().rotate(optical) }
+            }
             Mistake::PointsFromSensor => vector + pose().position,
             Mistake::PointsMoved(by) => vector - DVec3::from_array(by),
             Mistake::GlobalFrame => vector - scene.mesh().origin(),

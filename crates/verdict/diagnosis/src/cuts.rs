@@ -3,13 +3,12 @@
 use std::collections::BTreeMap;
 
 use crate::case::Case;
-use crate::channel::{Channel, Value, hit_quantity};
+use crate::channel::{Channel, Value};
 use crate::correction::Correction;
 use crate::forward::{cut_number, holds};
 use crate::mistake::{CutBy, Held, Mistake};
 use crate::numbers::plainest_between;
 use crate::sample::{Key, WrongRays, key};
-use raypencil_judge::Quantity;
 use raypencil_scene::{Place, SensorId};
 
 /// Share of the wrong rays that may be on the other side of a cut, or right on its own: one in so many.
@@ -179,10 +178,7 @@ fn lines(case: Case<'_>, sensor: SensorId, wrong: &WrongRays) -> Vec<(CutBy, boo
 
 /// What stands in the wrong cells: the plainest first.
 fn held(case: Case<'_>, sensor: SensorId, wrong: &WrongRays, (by, is_above): (CutBy, bool)) -> Vec<Held> {
-    let is_hit = |channel: &Channel| {
-        channel.item.quantity == Quantity::Face || hit_quantity(channel.item.quantity).is_some()
-    };
-    let channels: Vec<Channel> = case.channels().into_iter().filter(is_hit).collect();
+    let channels: Vec<Channel> = case.channels().into_iter().filter(|channel| channel.is_of_hit()).collect();
     let mut found = Vec::new();
     for channel in channels {
         let places = || wrong.of_hits.iter().map(|&(_, j, i)| Place { sensor, i, j });

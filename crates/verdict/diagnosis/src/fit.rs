@@ -7,10 +7,12 @@ use crate::agree::is_near;
 use crate::case::Case;
 use crate::channel::{Channel, Value};
 use crate::correction::{Correction, FluxFactors, Table, corrected};
-use crate::lengths::{MAX_COSINE_OF_TWO_PLANES, lengths};
-use crate::mistake::{AngleUnit, Cosine, Leg, Length, LengthUnit, Mistake, Vectors};
+use crate::forward::is_rounded;
+use crate::lengths::{MAX_COSINE_OF_TWO_PLANES, lengths, rounded_to};
+use crate::mistake::{AngleUnit, Cosine, FrameAxes, Leg, Length, LengthUnit, Mistake, Vectors};
 use crate::numbers::{middle, plainest};
 use crate::tally::{MIN_CONFIRMING_RAYS, MIN_WRONG_RAYS};
+use raypencil_files::Storage;
 use raypencil_judge::Quantity;
 use raypencil_scene::{FluxModel, HitQuantity, Image, Place, SensorId};
 
@@ -61,7 +63,7 @@ pub(crate) fn fixed(case: Case<'_>) -> Vec<Correction> {
         Mistake::Squared(Length::All),
         Mistake::Squared(Length::Range),
         Mistake::Squared(Length::Depth),
-        Mistake::SensorFrame,
+        Mistake::DistanceForView,
         Mistake::NormalsReversed,
         Mistake::NormalsNotUnit,
         Mistake::CosinesNegated,
@@ -82,7 +84,12 @@ pub(crate) fn fixed(case: Case<'_>) -> Vec<Correction> {
     if scene.mesh().origin() != glam::DVec3::ZERO {
         mistakes.push(Mistake::GlobalFrame);
     }
+    for axes in FrameAxes::ALL {
+        let of = [Vectors::Both, Vectors::Points, Vectors::Normals];
+        mistakes.extend(of.map(|of| Mistake::SensorFrame { of, axes }));
+    }
     mistakes.extend(moved_points(case));
+    mistakes.extend(rounded_points(case));
     let [incidence, off_axis, emission] = Cosine::ALL;
     for held in [
         [emission, off_axis, incidence],
@@ -103,11 +110,11 @@ pub(crate) fn fixed(case: Case<'_>) -> Vec<Correction> {
     let channels = case.channels();
     corrections.retain(|one| {
         let touched = channels.iter().filter(|channel| one.touches(**channel));
-        // Of all lengths is said only what is true of several.
+        // Of all lengths, or of both vectors, is said only what is true of several.
         let mut quantities: Vec<Quantity> = touched.map(|channel| channel.item.quantity).collect();
         quantities.sort_unstable();
         quantities.dedup();
-        quantities.len() > usize::from(one.is_of_all_lengths())
+        quantities.len() > usize::from(one.is_of_all_lengths() || one.is_of_both_vectors())
     });
     corrections
 }
@@ -145,6 +152,35 @@ fn moved_points(case: Case<'_>) -> Option<Mistake> {
         *by = plainest(median, 2.0 * rounding);
     }
     (has_planes && by != [0.0; 3]).then_some(Mistake::PointsMoved(by))
+}
+
+/// The largest quantum of which nearly all components of points are the multiples that are next to the true ones.
+fn rounded_points(case: Case<'_>) -> Option<Mistake> {
+    let mut components = Vec::new();
+    for channel in case.channels().into_iter().filter(|channel| channel.item.quantity == Quantity::Point) {
+        let storage = case.recorded.storage.get(&(channel.sensor, channel.item)).copied();
+        for place in rays(case, channel.sensor) {
+            let [stated, exact] =
+                [&case.recorded.answers, case.truth.answers()].map(|answers| channel.at(answers, place));
+            if let (Value::Vector(stated), Value::Vector(exact)) = (stated, exact) {
+                let storage = storage.unwrap_or(Storage::F64);
+                components.extend((0..3).map(|k| (storage, stated[k], exact[k])));
+            }
+        }
+    }
+    let is_right =
+        |(storage, stated, exact): &&(Storage, f64, f64)| (stated - exact).abs() <= storage.ulp(*stated);
+    if 2 * components.iter().filter(is_right).count() > components.len() {
+        return None;
+    }
+    let ulp = components.iter().map(|(storage, stated, _)| storage.ulp(*stated)).fold(0.0, f64::max);
+    rounded_to(ulp, |quantum| {
+        let is = |(storage, stated, exact): &&(Storage, f64, f64)| {
+            is_rounded(*storage, *stated, *exact, quantum, false)
+        };
+        components.iter().filter(is).count() as f64 >= MIN_CONSISTENT_SHARE * components.len().max(1) as f64
+    })
+    .map(Mistake::PointsRounded)
 }
 
 /// Whether hidden hits are called visible, and visible ones hidden: else another mistake says the same.

@@ -31,6 +31,14 @@ pub(crate) fn foretold(
             }
             _ => return stated,
         },
+        Mistake::PointsRounded(quantum) => match (stated, exact) {
+            (Value::Vector(stated), Value::Vector(exact)) => {
+                let storage = case.recorded.storage.get(&(channel.sensor, channel.item));
+                let storage = storage.copied().unwrap_or(Storage::F64);
+                (0..3).all(|k| is_rounded(storage, stated[k], exact[k], quantum, false))
+            }
+            _ => return stated,
+        },
         Mistake::HalfPrecision(_) => match (stated, exact) {
             (Value::Number(stated), Value::Number(exact)) => is_half(stated, exact),
             _ => return stated,

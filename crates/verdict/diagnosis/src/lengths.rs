@@ -217,13 +217,9 @@ impl Pairs {
         }
         let halves = self.values.iter().filter(|(stated, exact)| is_half(*stated, *exact)).count();
         let of_halves = halves as f64 / self.values.len() as f64;
-        let found = quanta().into_iter().filter(|quantum| *quantum >= QUANTUM_DIGITS * self.ulp).find_map(
-            |quantum| {
-                let is = |down: bool| share(quantum, down) >= MIN_SHARE_OF_MULTIPLES;
-                let down = if is(false) { Some(false) } else { is(true).then_some(true) };
-                down.map(|down| (quantum, down))
-            },
-        );
+        let is = |quantum: f64, down: bool| share(quantum, down) >= MIN_SHARE_OF_MULTIPLES;
+        let found = rounded_to(self.ulp, |quantum| is(quantum, false) || is(quantum, true));
+        let found = found.map(|quantum| (quantum, !is(quantum, false)));
         let multiples = found.map(|(quantum, down)| Mistake::Rounded { of: self.of, quantum, down });
         let half = (of_halves >= MIN_SHARE_OF_MULTIPLES).then_some(Mistake::HalfPrecision(self.of));
         multiples.into_iter().chain(half).collect()
@@ -239,6 +235,11 @@ fn line_through(pairs: &[(f64, f64)]) -> Option<[f64; 2]> {
     let product: f64 = pairs.iter().map(|pair| (pair.0 - y) * (pair.1 - x)).sum();
     let slope = product / square;
     (pairs.len() >= MIN_VALUES && slope.is_finite() && slope != 0.0).then_some([y - slope * x, slope])
+}
+
+/// The largest quantum that `is_grid` says the lengths lie on, and that they have digits beside.
+pub(crate) fn rounded_to(ulp: f64, is_grid: impl Fn(f64) -> bool) -> Option<f64> {
+    quanta().into_iter().filter(|quantum| *quantum >= QUANTUM_DIGITS * ulp).find(|quantum| is_grid(*quantum))
 }
 
 /// Quanta that are tried, metres, the largest first: 1, 2 and 5 of each decimal place, and powers of two.

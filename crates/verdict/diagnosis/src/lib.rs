@@ -107,4 +107,6 @@ struct Readme;
 
 pub use diagnose::diagnose;
 pub use diagnosis::{Diagnosis, Reason};
-pub use mistake::{AngleUnit, Cosine, CutBy, Held, Leg, Length, LengthUnit, Mistake, Turn, Vectors};
+pub use mistake::{
+    AngleUnit, Cosine, CutBy, FrameAxes, Held, Leg, Length, LengthUnit, Mistake, Turn, Vectors,
+};

@@ -108,6 +108,30 @@ pub enum Vectors {
     Both,
 }
 
+/// Axes of a sensor's frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FrameAxes {
+    /// z ahead, x to the right, y down: the contract's.
+    Optical,
+    /// -z ahead, x to the right, y up: OpenGL's.
+    OpenGl,
+    /// x ahead, y to the left, z up: a vehicle's.
+    Body,
+}
+
+impl FrameAxes {
+    pub(crate) const ALL: [Self; 3] = [Self::Optical, Self::OpenGl, Self::Body];
+
+    /// A vector in these axes, in the contract's.
+    pub(crate) fn to_optical(self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        match self {
+            Self::Optical => [x, y, z],
+            Self::OpenGl => [x, -y, -z],
+            Self::Body => [-y, -z, x],
+        }
+    }
+}
+
 /// What a recording is cut by: the number of a ray that decides whether its answer is lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CutBy {
@@ -196,8 +220,17 @@ pub enum Mistake {
         /// 1 or -1, for x, y and z.
         sign: [i8; 3],
     },
-    /// Points and normals are in the sensor's frame.
-    SensorFrame,
+    /// Points or normals are in the sensor's frame.
+    SensorFrame {
+        /// Which vectors.
+        of: Vectors,
+        /// The axes of that frame.
+        axes: FrameAxes,
+    },
+    /// The components of points are rounded to multiples of a quantum, metres.
+    PointsRounded(f64),
+    /// `view.Z` is the distance from the camera to the hit.
+    DistanceForView,
     /// Points are counted from the sensor, in the axes of the scene.
     PointsFromSensor,
     /// Points are off by one vector, metres, in the axes of the scene.
@@ -393,7 +426,9 @@ impl Mistake {
             Self::AxesYUp => "axes_y_up",
             Self::AxesYUpInverse => "axes_y_up_inverse",
             Self::Axes { .. } => "axes",
-            Self::SensorFrame => "sensor_frame",
+            Self::SensorFrame { .. } => "sensor_frame",
+            Self::PointsRounded(_) => "points_rounded",
+            Self::DistanceForView => "distance_for_view",
             Self::PointsFromSensor => "points_from_sensor",
             Self::PointsMoved(_) => "points_moved",
             Self::GlobalFrame => "global_frame",
@@ -471,7 +506,9 @@ impl Mistake {
             | Self::RangeForDepth
             | Self::ParameterForDepth
             | Self::Unit(_)
-            | Self::SensorFrame
+            | Self::SensorFrame { .. }
+            | Self::PointsRounded(_)
+            | Self::DistanceForView
             | Self::PointsFromSensor
             | Self::PointsMoved(_)
             | Self::GlobalFrame

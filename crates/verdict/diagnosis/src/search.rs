@@ -246,6 +246,7 @@ impl<'t> Search<'t> {
                 one.mistake,
                 Mistake::Affine { .. }
                     | Mistake::Rounded { .. }
+                    | Mistake::PointsRounded(_)
                     | Mistake::HalfPrecision(_)
                     | Mistake::FromPlane(_)
                     | Mistake::FluxFactor(_)

@@ -124,8 +124,9 @@ impl<'t> Trial<'t> {
             plan.off.held += off[best].held;
             plan.off.lost += off[best].lost;
             for (bit, one) in plan.corrections.iter().enumerate() {
-                // What is said of all lengths must be true of each.
-                if one.is_of_all_lengths() && one.touches(*channel) && best >> bit & 1 == 0 {
+                // What is said of all lengths, or of all hits, must be true of each.
+                let is_of_each = one.is_of_all_lengths() || one.is_of_all_hits() && channel.is_of_hit();
+                if is_of_each && one.touches(*channel) && best >> bit & 1 == 0 {
                     return None;
                 }
             }

@@ -2,7 +2,9 @@
 
 use std::fmt;
 
-use crate::mistake::{AngleUnit, Cosine, CutBy, Held, Leg, Length, LengthUnit, Mistake, Turn, Vectors};
+use crate::mistake::{
+    AngleUnit, Cosine, CutBy, FrameAxes, Held, Leg, Length, LengthUnit, Mistake, Turn, Vectors,
+};
 
 /// The mistake as a clause that follows "if", and the rule that it breaks.
 impl fmt::Display for Mistake {
@@ -68,12 +70,7 @@ impl fmt::Display for Mistake {
                 "the axes are (x, -z, y): the change from glTF's y up was made twice",
             ),
             Self::Axes { of, from, sign } => {
-                let what = match of {
-                    Vectors::Points => "points",
-                    Vectors::Normals => "normals",
-                    Vectors::Both => "points and normals",
-                };
-                write!(f, "{what} are in other axes: the scene's (x, y, z) is their (")?;
+                write!(f, "{} are in other axes: the scene's (x, y, z) is their (", vectors(*of))?;
                 for k in 0..3 {
                     let comma = if k == 0 { "" } else { ", " };
                     let minus = if sign[k] < 0 { "-" } else { "" };
@@ -81,8 +78,19 @@ impl fmt::Display for Mistake {
                 }
                 f.write_str(")")
             }
-            Self::SensorFrame => {
-                f.write_str("points and normals are in the sensor's frame: they belong in the scene frame")
+            Self::SensorFrame { of, axes } => {
+                let axes = match axes {
+                    FrameAxes::Optical => "",
+                    FrameAxes::OpenGl => ", in OpenGL's axes (x right, y up, z back)",
+                    FrameAxes::Body => ", in the axes x ahead, y left, z up",
+                };
+                write!(f, "{} are in the sensor's frame{axes}: they belong in the scene frame", vectors(*of))
+            }
+            Self::PointsRounded(quantum) => {
+                write!(f, "the components of points are rounded to multiples of {}", metres(*quantum))
+            }
+            Self::DistanceForView => {
+                f.write_str("view.Z holds the distance from the camera: it is the depth along the camera's axis")
             }
             Self::PointsFromSensor => {
                 f.write_str("points are counted from the sensor: they are counted from the scene's origin")
@@ -304,6 +312,14 @@ fn three(numbers: [f64; 3]) -> String {
 fn part(offset: f64, unit: &str, [less, more]: [&str; 2]) -> Option<String> {
     (offset != 0.0)
         .then(|| format!("{} {unit} {}", short(offset.abs()), if offset < 0.0 { less } else { more }))
+}
+
+fn vectors(of: Vectors) -> &'static str {
+    match of {
+        Vectors::Points => "points",
+        Vectors::Normals => "normals",
+        Vectors::Both => "points and normals",
+    }
 }
 
 /// A length and its verb.

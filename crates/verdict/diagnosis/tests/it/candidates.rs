@@ -174,19 +174,24 @@ pub fn one_wall([across, down]: [f32; 2]) -> Bench {
 
 /// The camera's answers of some quantities alone.
 pub fn only(exact: &Recorded, quantities: &[Quantity]) -> Recorded {
+    only_of(exact, SensorId::Camera, quantities)
+}
+
+/// A candidate that gives these quantities of one sensor alone.
+pub fn only_of(exact: &Recorded, sensor: SensorId, quantities: &[Quantity]) -> Recorded {
     let mut candidate = exact.clone();
-    candidate.storage.retain(|(sensor, item), _| {
-        *sensor == SensorId::Camera && item.beam.is_none() && quantities.contains(&item.quantity)
+    candidate.storage.retain(|(own, item), _| {
+        *own == sensor && item.beam.is_none() && quantities.contains(&item.quantity)
     });
-    let has = |quantity: Quantity| quantities.contains(&quantity);
-    for (index, map) in candidate.answers.maps.iter_mut().enumerate() {
-        let is_camera = index == 0;
-        map.face = map.face.take().filter(|_| is_camera && has(Quantity::Face));
-        map.range = map.range.take().filter(|_| is_camera && has(Quantity::Range));
-        map.depth = map.depth.take().filter(|_| is_camera && has(Quantity::Depth));
-        map.point = map.point.take().filter(|_| is_camera && has(Quantity::Point));
-        map.normal = map.normal.take().filter(|_| is_camera && has(Quantity::Normal));
-        map.cos_incidence = map.cos_incidence.take().filter(|_| is_camera && has(Quantity::CosIncidence));
+    for map in &mut candidate.answers.maps {
+        let is_own = map.sensor == sensor;
+        let has = |quantity: Quantity| is_own && quantities.contains(&quantity);
+        map.face = map.face.take().filter(|_| has(Quantity::Face));
+        map.range = map.range.take().filter(|_| has(Quantity::Range));
+        map.depth = map.depth.take().filter(|_| has(Quantity::Depth));
+        map.point = map.point.take().filter(|_| has(Quantity::Point));
+        map.normal = map.normal.take().filter(|_| has(Quantity::Normal));
+        map.cos_incidence = map.cos_incidence.take().filter(|_| has(Quantity::CosIncidence));
     }
     for light in &mut candidate.answers.light {
         light.image = None;

@@ -173,3 +173,21 @@ fn an_image_of_wrong_pencils_has_them_for_a_reason() {
     candidate.answers.light[0].image = Some(sum);
     assert_eq!(bench.reasons(&candidate), [""; 0]);
 }
+
+#[test]
+fn distances_from_the_camera_are_no_depths() {
+    let bench = pyramids();
+    let mut candidate = bench.exact.clone();
+    for beam in 0..2 {
+        let returns = &mut candidate.answers.light[beam].returns;
+        let cosines = returns.cos_off_axis.clone().unwrap();
+        let depths = returns.depth.as_mut().unwrap();
+        for (i, j) in cells(bench.exact.answers.light[beam].returns.visible.as_ref().unwrap()) {
+            let distance =
+                depths.at(i, j).get().zip(cosines.at(i, j).get()).map(|(depth, cosine)| depth / cosine);
+            depths.set(i, j, distance.into());
+        }
+    }
+    let told = bench.reasons(&candidate);
+    assert_eq!(told, ["beam-0, beam-1: distance_for_view"]);
+}

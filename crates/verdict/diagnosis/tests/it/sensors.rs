@@ -5,7 +5,9 @@ use std::sync::Arc;
 use raypencil_diagnosis::Mistake;
 use raypencil_judge::{Quantity, Recorded};
 use raypencil_referee::ExactRenderer;
-use raypencil_scene::{Camera, Maybe, Mounted, Precision, Renderer, Request, Scene, SensorId, SensorMap};
+use raypencil_scene::{
+    Camera, FaceId, Maybe, Mounted, Precision, Renderer, Request, Scene, SensorId, SensorMap,
+};
 
 use super::candidates::*;
 use super::one::as_single;
@@ -16,7 +18,7 @@ const CAMERA: SensorId = SensorId::Camera;
 const BEAM: SensorId = SensorId::Beam(1);
 
 /// Mistakes in the camera, and the key by which each is told.
-const TABLE: [(&str, &str); 30] = [
+const TABLE: [(&str, &str); 34] = [
     ("last row lost", "lines_lost"),
     ("last row 0", "lines_lost"),
     ("last row twice", "line_doubled"),
@@ -44,6 +46,10 @@ const TABLE: [(&str, &str); 30] = [
     ("points from the sensor", "points_from_sensor"),
     ("points moved", "points_moved"),
     ("half precision", "half_precision"),
+    ("view space of OpenGL", "sensor_frame"),
+    ("sensor's frame, x ahead", "sensor_frame"),
+    ("points in the sensor's frame", "sensor_frame"),
+    ("points rounded", "points_rounded"),
     ("squared range", "squared"),
     ("z-buffer", "z_buffer"),
     ("reversed z-buffer", "z_buffer"),
@@ -94,6 +100,24 @@ fn a_lost_column_proves_no_rule_of_rays() {
     }
 }
 
+/// Rows of a beam meet the same faces: where a part of the first row is lost, faces taken from the next row are right again. But the
+/// ranges are not those of the next row.
+#[test]
+fn a_row_that_is_lost_in_part_is_no_shift() {
+    let mut candidate =
+        only_of(&pyramids().exact, BEAM, &[Quantity::Face, Quantity::Range, Quantity::Normal]);
+    let depths = pyramids().exact.answers.map(BEAM).depth.clone();
+    let map = candidate.answers.maps.iter_mut().find(|map| map.sensor == BEAM).unwrap();
+    map.range = depths;
+    for i in 0..22 {
+        map.face.as_mut().unwrap().set(i, 0, Maybe::NONE);
+        map.range.as_mut().unwrap().set(i, 0, Maybe::NONE);
+        map.normal.as_mut().unwrap().set(i, 0, Maybe::NONE);
+    }
+    let told = pyramids().reasons(&candidate);
+    assert!(told.iter().all(|reason| !reason.contains("shifted")), "{told:?}");
+}
+
 #[test]
 fn a_mistake_in_a_beam_is_told_of_the_beam_alone() {
     for (name, key) in OF_BEAM {
@@ -112,6 +136,9 @@ fn axes_are_told_of_the_vectors_that_have_them() {
     assert!(told("points' axes").starts_with("points are in other axes"));
     assert!(told("normals' axes").starts_with("normals are in other axes"));
     assert!(told("axes turned").starts_with("points and normals are in other axes"));
+    assert!(told("points in the sensor's frame").starts_with("points are in the sensor's frame:"));
+    assert!(told("sensor's frame").starts_with("points and normals are in the sensor's frame:"));
+    assert!(told("view space of OpenGL").contains("OpenGL's axes"));
 }
 
 #[test]

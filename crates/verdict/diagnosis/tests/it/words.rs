@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use raypencil_diagnosis::{
-    AngleUnit, Cosine, CutBy, Diagnosis, Held, Leg, Length, LengthUnit, Mistake, Reason, Turn, Vectors,
+    AngleUnit, Cosine, CutBy, Diagnosis, FrameAxes, Held, Leg, Length, LengthUnit, Mistake, Reason, Turn,
+    Vectors,
 };
 use raypencil_scene::SensorId;
 
@@ -48,7 +49,11 @@ fn all() -> Vec<Mistake> {
         Mistake::Thickness { stated: 0.0, truth: 0.02 },
         Mistake::PoseInverted,
         Mistake::QuaternionOrder,
-        Mistake::SensorFrame,
+        Mistake::SensorFrame { of: Vectors::Both, axes: FrameAxes::Optical },
+        Mistake::SensorFrame { of: Vectors::Points, axes: FrameAxes::OpenGl },
+        Mistake::SensorFrame { of: Vectors::Normals, axes: FrameAxes::Body },
+        Mistake::PointsRounded(0.001),
+        Mistake::DistanceForView,
         Mistake::GlobalFrame,
         Mistake::NormalsReversed,
         Mistake::NormalsNotUnit,

@@ -89,11 +89,19 @@ pub const MISTAKES: &[Make] = &[
     ("axes turned", |m| turned(m, Mistake::Axes { of: Vectors::Both, from: [2, 0, 1], sign: [1; 3] })),
     ("points' axes", |m| turned_alone(m, Vectors::Points)),
     ("normals' axes", |m| turned_alone(m, Vectors::Normals)),
-    ("sensor's frame", |m| {
+    ("sensor's frame", |m| in_sensor_frame(m, FrameAxes::Optical)),
+    ("view space of OpenGL", |m| in_sensor_frame(m, FrameAxes::OpenGl)),
+    ("sensor's frame, x ahead", |m| in_sensor_frame(m, FrameAxes::Body)),
+    ("points in the sensor's frame", |m| {
         let pose = m.pose();
         m.vectors(true, |_, _, p| pose.inverse() * p);
-        m.vectors(false, |_, _, n| pose.inverse().rotate(n));
-        if pose == Pose::IDENTITY { Vec::new() } else { vec![Mistake::SensorFrame] }
+        let own = Mistake::SensorFrame { of: Vectors::Points, axes: FrameAxes::Optical };
+        if pose == Pose::IDENTITY { Vec::new() } else { vec![own] }
+    }),
+    ("points rounded", |m| {
+        let quantum = [1e-3, 1e-2, 5e-3, 1.0 / 256.0, 1e-4][m.random.below(5)];
+        m.vectors(true, |_, _, p| (p / quantum).round() * quantum);
+        vec![Mistake::PointsRounded(quantum)]
     }),
     ("points from the sensor", |m| {
         let position = m.pose().position;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use raypencil_diagnosis::{
-    AngleUnit, CutBy, Diagnosis, Held, Length, LengthUnit, Mistake, Reason, Turn, Vectors,
+    AngleUnit, CutBy, Diagnosis, FrameAxes, Held, Length, LengthUnit, Mistake, Reason, Turn, Vectors,
 };
 use raypencil_judge::{Quantity, Recorded};
 use raypencil_referee::ExactRenderer;
@@ -284,6 +284,24 @@ fn turned_alone(making: &mut Making<'_>, of: Vectors) -> Vec<Mistake> {
     vec![Mistake::Axes { of, from: [1, 0, 2], sign: [1, 1, -1] }]
 }
 
+/// Points and normals in the sensor's frame, as other people lay its axes.
+fn in_sensor_frame(making: &mut Making<'_>, axes: FrameAxes) -> Vec<Mistake> {
+    let pose = making.pose();
+    // What is ahead in the contract's axes is z.
+    let laid: fn(DVec3) -> DVec3 = match axes {
+        FrameAxes::Optical => |v| v,
+        FrameAxes::OpenGl => |v| DVec3::new(v.x, -v.y, -v.z),
+        FrameAxes::Body => |v| DVec3::new(v.z, -v.x, -v.y),
+    };
+    making.vectors(true, |_, _, p| laid(pose.inverse() * p));
+    making.vectors(false, |_, _, n| laid(pose.inverse().rotate(n)));
+    if pose == Pose::IDENTITY && axes == FrameAxes::Optical {
+        return Vec::new();
+    }
+    // A candidate may leave out one of the two.
+    [Vectors::Both, Vectors::Points, Vectors::Normals].map(|of| Mistake::SensorFrame { of, axes }).to_vec()
+}
+
 /// Another pitch across, or down, or both.
 fn pitched(making: &mut Making<'_>, by: [f64; 2]) -> Vec<Mistake> {
     if making.sensor != SensorId::Camera {
@@ -359,7 +377,12 @@ fn rounded(making: &mut Making<'_>, of: Length, quantum: f64, down: bool) -> Vec
 /// Depths as a z-buffer holds them, 0 and 1 at these.
 fn z_buffered(making: &mut Making<'_>, zero_at: f64, one_at: f64) -> Vec<Mistake> {
     making.lengths(Length::Depth, |_, _, x| (1.0 / zero_at - 1.0 / x) / (1.0 / zero_at - 1.0 / one_at));
-    vec![Mistake::ZBuffer { low: 0.0, low_at: zero_at, one_at }]
+    // A line is known by any two points: it is -1 as far in front of `zero_at`, in 1/depth, as it is 1 behind it.
+    let minus_one_at = 1.0 / (2.0 / zero_at - 1.0 / one_at);
+    vec![
+        Mistake::ZBuffer { low: 0.0, low_at: zero_at, one_at },
+        Mistake::ZBuffer { low: -1.0, low_at: minus_one_at, one_at },
+    ]
 }
 
 /// The nearest number of 11 significant bits.

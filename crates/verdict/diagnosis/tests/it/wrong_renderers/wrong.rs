@@ -163,8 +163,24 @@ fn is_alike<'m>(made: impl Iterator<Item = &'m [Mistake]> + Clone, reason: &Reas
             };
             has(&is_down) && has(&is_half)
         }
-        Mistake::DepthForRange => is_whole && has(&|one| *one == Mistake::ParameterForRange) && has(&is_line),
-        Mistake::Affine { of: Length::Range, .. } => {
+        // One row down and then reversed is reversed and then one row up: a recording does not say which came first.
+        Mistake::Shifted { columns, rows } => {
+            let is_turned = |turn: Mistake, other: Mistake| {
+                reason.mistakes.contains(&turn) && has(&|one| *one == turn) && has(&|one| *one == other)
+            };
+            is_whole
+                && (is_turned(Mistake::RowsReversed, Mistake::Shifted { columns: *columns, rows: -rows })
+                    || is_turned(
+                        Mistake::ColumnsReversed,
+                        Mistake::Shifted { columns: -columns, rows: *rows },
+                    ))
+        }
+        Mistake::DepthForRange => {
+            is_whole
+                && has(&|one| *one == Mistake::ParameterForRange)
+                && (has(&is_line) || has(&|one| *one == Mistake::RangeForDepth))
+        }
+        Mistake::Affine { of: Length::Range | Length::All, .. } => {
             is_whole
                 && reason.mistakes.contains(&Mistake::DepthForRange)
                 && has(&|one| *one == Mistake::ParameterForRange)
@@ -191,6 +207,9 @@ fn is_turn_of_all<'m>(made: impl Iterator<Item = &'m [Mistake]>, told: &Mistake)
         Mistake::AxesYUpInverse => Some(([0, 2, 1], [1, 1, -1])),
         Mistake::Axes { from, sign, .. } => Some((*from, *sign)),
         Mistake::NormalsReversed => Some(([0, 1, 2], [-1; 3])),
+        // A sensor that stands at the scene's origin and looks as the scene's axes do has another frame by its axes alone.
+        Mistake::SensorFrame { axes: FrameAxes::OpenGl, .. } => Some(([0, 1, 2], [1, -1, -1])),
+        Mistake::SensorFrame { axes: FrameAxes::Body, .. } => Some(([1, 2, 0], [-1, -1, 1])),
         _ => None,
     };
     // Component k of what it was is `sign` times component `from` of what it became.
