@@ -22,8 +22,8 @@ from raypencil import peers
 from raypencil.peers import Counts, Hits, _command, _known, _snippets
 from raypencil.peers._figures import laws_svg, speed_svg
 from raypencil.peers._hunt import ending, hunted, hunting_rays, reproduces, script, told_by
-from raypencil.peers._laws import LAWS, Threshold, explained, sentence, share_wrong, thresholds
-from raypencil.peers._measure import Measured, machine, measure, of_answers
+from raypencil.peers._laws import LAWS, Threshold, bumpy, explained, sentence, share_wrong, thresholds
+from raypencil.peers._measure import Measured, Step, installed, machine, measure, of_answers
 from raypencil.peers._ours import Referee, Tracer
 from raypencil.peers._page import cell, page, paragraph
 from raypencil.peers._peer import PROCESSOR, Rays
@@ -188,6 +188,27 @@ def test_faces_are_left_out_also_where_none_is_likely() -> None:
     assert len(small.faces) == 3 and len(small.vertices) <= 9 and small.faces.max() == len(small.vertices) - 1
 
 
+def test_faces_are_left_out_also_where_each_of_them_moves_all_corners() -> None:
+    class Centred(Referee):
+        """Moves a mesh to its middle in single precision, and loses the rays that begin at every sixteenth place there."""
+
+        def shoot(self, built: Any, rays: Rays) -> Hits:
+            told = super().shoot(built, rays)
+            begins = (rays[:, 0:3] - built.vertices.mean(axis=0)).sum(axis=1).astype(np.float32)
+            is_lost = begins.view(np.uint32) % 16 == 0
+            assert told.face is not None
+            return Hits(np.where(is_lost, -1, told.face), np.where(is_lost, np.inf, told.t))
+
+    vertices, faces = bumpy(24)
+    mesh = raypencil.Mesh(vertices, faces)
+    rays, _ = hunting_rays(mesh, 240, 1)
+    _, wrong = peers.judged(Centred(), question := peers.asked(Centred, mesh, rays), Centred().first(mesh, question.rays))
+    assert 5 < len(wrong) < 40
+    for k in wrong[:5]:
+        small = reduced(Centred(), Case(vertices, faces, question.rays[k]))
+        assert len(small.faces) <= 2 and wrong_hit(Centred(), small) is not None
+
+
 def test_the_exact_answer_is_that_of_the_referee() -> None:
     mesh = raypencil.Mesh([[0, 0, 0], [4, 0, 0], [0, 4, 0], [4, 4, 0]], [[0, 1, 2], [3, 2, 1]])
     one = peers.asked(Referee, mesh, np.array([[1.0, 1, 3, 0, 0, -7]]))
@@ -265,7 +286,7 @@ def test_a_paragraph_says_what_is_lost_and_what_to_do() -> None:
     assert paragraph(one) == (
         "**Planted** (planted 1.0; reads mesh and rays in double precision; judged as f64). 4 of 170 first hits are wrong: edges 4."
         " Of 830 rays through edges and vertices of a closed mesh 4 are not stopped where they should be. It misses every ray on a"
-        " mesh narrower than 0.0081. 5 ranges are off by more than rounding. It refuses the mesh of tiny (Error: no). What to do:"
+        " mesh narrower than 0.0081. By its convention 6 rays meet faces without an area. 5 ranges are off by more than rounding. It refuses the mesh of tiny (Error: no). What to do:"
         " scale a small mesh, with its rays, to a width of about 1, and t back; do not count crossings of closed meshes by it."
         " `raypencil-peers ask planted`"
     )
@@ -274,6 +295,11 @@ def test_a_paragraph_says_what_is_lost_and_what_to_do() -> None:
     assert cell(one.families["edges"]) == "**4** of 6, convention 6" and cell("Error") == "refused" and cell(Counts(9)) == "0"
     assert cell(Counts(9, other=2)) == "0 of 2"
     assert "It answers all rays exactly." in paragraph(measured(Referee()))
+
+    class InPlane(Planted):
+        meets_in_plane = True
+
+    assert "By its convention 1 ray meets faces in whose plane the ray lies." in paragraph(measured(InPlane(), edges=Counts(10, convention=1)))
     # What its source says stands for what is concluded from thresholds, and its own remedy for the general one.
     known = paragraph(measured(Known()))
     assert "narrower than 0.0081. It takes a determinant below 1e-06 for 0 (`meet`, src/meet.c). What to do: make directions longer." in known
@@ -295,6 +321,26 @@ def test_the_page_has_a_row_and_a_paragraph_for_each() -> None:
     assert 'fill="#cccccc"' in laws_svg(several)
 
 
+def test_the_page_says_what_the_two_commands_took(tmp_path: Path) -> None:
+    quick, slow = (replace(measured(one), seconds=seconds, load=load) for one, seconds, load in ((Planted(), 66.0, 0.5), (Tracer(), 240.0, 4.0)))
+    environment, kept = tmp_path / "environment", tmp_path / "kept"
+    environment.mkdir()
+    kept.mkdir()
+    assert installed(kept, environment) == []
+    (environment / "installed.tsv").write_text("an empty environment\t4\t26\nPython's packages\t90\t5000\n")
+    steps = installed(kept, environment)
+    assert steps == [Step("an empty environment", 4, 26), Step("Python's packages", 90, 5000)]
+    # What is kept stands for what was made, also where another environment writes the page.
+    assert installed(kept, tmp_path / "none") == steps
+    told = page([quick, slow], {}, steps)
+    assert "| Python's packages | 90 | 5,000 |\n| all | 94 | 5,026 |" in told
+    assert "The second takes 5 minutes; the longest of them raypencil's tracer 4 and Planted 1." in told
+    assert "one program after the other, beside other work (its load, when each began, was 0.5 to 4)" in told
+    # Where nobody noted the time of one, nothing is said of all.
+    some = page([quick, measured(Tracer())], {})
+    assert "The second takes" not in some and "not all in the same hour" in some and "installed.tsv" not in some
+
+
 def test_the_page_of_the_docs_has_the_words_of_the_adapters_of_what_is_kept() -> None:
     folders = [ROOT / "reference" / "peers" / name for name in ("kept", "card")]
     names = [one.name for one in peers.every_peer()]
@@ -302,7 +348,7 @@ def test_the_page_of_the_docs_has_the_words_of_the_adapters_of_what_is_kept() ->
     several, missing = measure(names, folders[0], lambda line: pytest.fail(line), folders[1])
     if missing:
         pytest.skip(f"the questions are others than those of the page: {missing}")
-    assert page(several, {}) == (ROOT / "docs" / "peers.md").read_text(encoding="utf-8")
+    assert page(several, {}, installed(folders[0], ROOT)) == (ROOT / "docs" / "peers.md").read_text(encoding="utf-8")
 
 
 def test_a_process_that_dies_is_followed_by_another() -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 from .._errors import RaypencilError
 from ._figures import laws_svg, speed_svg
 from ._known import LEFT_OUT, every_peer, peer
-from ._measure import Measured, measure
+from ._measure import Measured, Step, installed, measure
 from ._page import LAWS_FIGURE, SPEED_FIGURE, cell, how_rounded, page, paragraph
 from ._peer import Unavailable
 
@@ -57,14 +57,18 @@ def _list() -> int:
     return 0
 
 
-def _measured(names: Sequence[str], kept: Path | None, elsewhere: Path | None = None) -> tuple[list[Measured], dict[str, str]]:
+def _measured(
+    names: Sequence[str], kept: Path | None, elsewhere: Path | None = None
+) -> tuple[list[Measured], dict[str, str], list[Step]]:
     with tempfile.TemporaryDirectory() as folder:
-        return measure(names, kept or Path(folder), lambda line: print(f"asking {line}", file=sys.stderr, flush=True), elsewhere)
+        place = kept or Path(folder)
+        measured, missing = measure(names, place, lambda line: print(f"asking {line}", file=sys.stderr, flush=True), elsewhere)
+        return measured, missing, installed(place)
 
 
 def _ask(name: str) -> int:
     peer(name)
-    measured, missing = _measured([name], None)
+    measured, missing, _ = _measured([name], None)
     if missing:
         raise RaypencilError(missing[name])
     (one,) = measured
@@ -80,10 +84,10 @@ def _table(names: Sequence[str], output: Path | None, kept: Path | None, elsewhe
         peer(name)
     if elsewhere is not None and not elsewhere.is_dir():
         raise RaypencilError(f"`--elsewhere {elsewhere}` is no folder")
-    measured, missing = _measured(names or [one.name for one in every_peer()], kept, elsewhere)
+    measured, missing, steps = _measured(names or [one.name for one in every_peer()], kept, elsewhere)
     if not measured:
         raise RaypencilError("none of these peers could be asked: `raypencil-peers list` says why")
-    text = page(measured, missing)
+    text = page(measured, missing, steps)
     if output is None:
         print(text, end="")
         return 0

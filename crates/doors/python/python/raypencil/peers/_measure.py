@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
 import platform
+import shutil
+import sys
+import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +22,40 @@ from ._worker import Job, work
 
 #: Rays of the measurement of speed, at most.
 _RAYS = 1 << 20
+
+#: What `reference/peers/install.sh` notes of the environment that it makes: a line for each step, its seconds and MB.
+INSTALLED = "installed.tsv"
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of making an environment.
+
+    Attributes:
+        name: in words.
+        seconds: that it took.
+        megabytes: by which the environment grew.
+    """
+
+    name: str
+    seconds: int
+    megabytes: int
+
+
+def installed(kept: Path, environment: Path = Path(sys.prefix)) -> list[Step]:
+    """The steps of making an environment, as a folder of answers keeps them; none: no one noted them.
+
+    Args:
+        kept: the folder. What `environment` notes is copied into it once.
+        environment: of which the notes are.
+    """
+    file = kept / INSTALLED
+    if not file.is_file() and (environment / INSTALLED).is_file():
+        shutil.copyfile(environment / INSTALLED, file)
+    if not file.is_file():
+        return []
+    rows = (line.split("\t") for line in file.read_text(encoding="utf-8").splitlines())
+    return [Step(name, int(seconds), int(megabytes)) for name, seconds, megabytes in rows]
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +70,8 @@ class Measured:
         shares: for each law the values, and at each the share of wrong rays; ``None`` where the peer could not be asked.
         thresholds: where half of the rays become wrong.
         speed: rays a second on a ground of 8192 faces; ``None`` where it could not be asked.
+        seconds: that all of it took; ``None`` where nobody noted them.
+        load: processes that wanted a core, a mean of the minute before; ``None`` as well.
     """
 
     peer: Peer
@@ -41,6 +81,8 @@ class Measured:
     shares: dict[str, list[tuple[float, float | None]]]
     thresholds: list[Threshold]
     speed: float | None
+    seconds: float | None = None
+    load: float | None = None
 
     @property
     def total(self) -> Counts:
@@ -107,23 +149,32 @@ def measure(
                 missing[name] = str(error)
                 continue
             tell(f"{one.title} {version}")
+            load, start = _load(), time.monotonic()
             answers = work(name, jobs())
+            seconds = round(time.monotonic() - start, 1)
             if gone := [answer["unavailable"] for answer in answers if "unavailable" in answer]:
                 missing[name] = gone[0]
                 continue
-            data = {"version": version, "machine": machine(device), "jobs": jobs(), "answers": answers}
+            data = {
+                "version": version, "machine": machine(device), "seconds": seconds, "load": load,
+                "jobs": jobs(), "answers": answers,
+            }  # fmt: skip
             file.write_text(json.dumps(data) + "\n", encoding="utf-8")
         data = json.loads(file.read_text(encoding="utf-8"))
         if data["jobs"] == jobs() and "machine" in data:
-            measured.append(of_answers(one, data["version"], data["machine"], data["answers"]))
+            whole = of_answers(one, data["version"], data["machine"], data["answers"])
+            measured.append(replace(whole, seconds=data.get("seconds"), load=data.get("load")))
         else:
             missing[name] = f"{file} is of other questions: remove it"
     return measured, missing
 
 
+def _load() -> float | None:
+    """Processes that want a core, a mean of the last minute; ``None`` on a system that does not tell."""
+    return round(os.getloadavg()[0], 1) if hasattr(os, "getloadavg") else None
+
+
 def machine(device: str = PROCESSOR) -> str:
     """A machine of speeds, in words."""
-    import os
-
     card = "" if device == PROCESSOR else f"{device}, "
     return f"{card}{os.cpu_count()} cores, {platform.machine()}, Python {platform.python_version()}"

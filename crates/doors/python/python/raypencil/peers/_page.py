@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from ..testing import hard_rays
 from ._known import LEFT_OUT
 from ._laws import LAWS, Threshold, explained, listed, sentence
-from ._measure import Measured
+from ._measure import Measured, Step
 from ._peer import Peer
 from ._question import Counts
 
@@ -110,6 +110,9 @@ def paragraph(one: Measured) -> str:
         said += peer.causes
     elif why := explained(one.thresholds):
         said.append(why)
+    if total.convention:
+        which = "in whose plane the ray lies" if peer.meets_in_plane else "without an area"
+        said.append(f"By its convention {total.convention} ray{'s' * (total.convention != 1)} {_meet(total.convention)} faces {which}.")
     if total.ranges:
         said.append(f"{total.ranges} range{'s' * (total.ranges != 1)} {_are(total.ranges)} off by more than rounding.")
     if one.refused:
@@ -127,13 +130,23 @@ def _are(count: int) -> str:
     return "is" if count == 1 else "are"
 
 
+def _meet(count: int) -> str:
+    return "meets" if count == 1 else "meet"
+
+
 def _short(words: str) -> str:
     line = words.splitlines()[0].replace("|", "/")
     return line if len(line) < 120 else line[:117] + "..."
 
 
-def page(measured: Sequence[Measured], missing: Mapping[str, str]) -> str:
-    """The page."""
+def page(measured: Sequence[Measured], missing: Mapping[str, str], steps: Sequence[Step] = ()) -> str:
+    """The page.
+
+    Args:
+        measured: what was asked, in the order of the page.
+        missing: the peers that could not be asked, each with the reason.
+        steps: of making the environment.
+    """
     others = [one for one in measured if one.peer.registry != "here"]
     packages = {one.peer.package for one in others}
     ours = [one for one in measured if one.peer.registry == "here"]
@@ -158,12 +171,13 @@ def page(measured: Sequence[Measured], missing: Mapping[str, str]) -> str:
         " where there is none) or of *another face*. It is **wrong** by the rule of `raypencil check`, which excuses an answer that is"
         " right for a ray moved sideways by 16 u S (u: the unit roundoff of the program's own arithmetic; S: the largest coordinate"
         " plus the origin's; [cast.md](guide/cast.md)). *t wrong*: the face is right, and t off by more than rounding. *Convention*:"
-        " the program counts a face in whose plane the ray lies; that is a choice, not a fault. A program that tells no face is judged"
-        " by t. raypencil's own rows are by the same rule.",
+        " the program counts a face in whose plane the ray lies, or one without an area (rounded to single precision the mesh of"
+        " *far-mesh* has no others); that is a choice, not a fault. A program that tells no face is judged by t. raypencil's own rows are"
+        " by the same rule.",
         "",
         *_table(measured),
         "",
-        f"Rays a second: on 8192 faces, on a machine of {here}, not all in the same hour; threads as each program takes them by itself,"
+        f"Rays a second: on 8192 faces, on a machine of {here}, {_when(measured, here)}; threads as each program takes them by itself,"
         " and through Python or Node where that is how it is called; crates are asked from Rust, in one thread. It says what a call costs,"
         " not what an engine can do. The best of"
         " five runs or more; read the power of ten, for other work on the machine makes some rows slower." + _elsewhere(measured, here),
@@ -211,8 +225,43 @@ def page(measured: Sequence[Measured], missing: Mapping[str, str]) -> str:
         "```",
         "",
         "With `--kept reference/peers/kept`, where the answers of this page are, those alone are asked whose file was removed.",
+        *_made(measured, here, steps),
     ]
     return "\n".join(lines) + "\n"
+
+
+def _asking(measured: Sequence[Measured], here: str) -> list[tuple[float, float | None]]:
+    """Seconds and load of each program that was asked here; none, if nobody noted them of one."""
+    noted = [(one.seconds, one.load) for one in measured if one.machine == here]
+    return [(seconds, load) for seconds, load in noted if seconds is not None] if all(seconds is not None for seconds, _ in noted) else []
+
+
+def _when(measured: Sequence[Measured], here: str) -> str:
+    """In which hours the programs were asked, and what else the machine did."""
+    loads = [load for _, load in _asking(measured, here) if load is not None]
+    if not loads:
+        return "not all in the same hour"
+    return f"one program after the other, beside other work (its load, when each began, was {min(loads):g} to {max(loads):g})"
+
+
+def _made(measured: Sequence[Measured], here: str, steps: Sequence[Step]) -> list[str]:
+    """What the two commands took, in time and on the disk."""
+    lines: list[str] = []
+    if steps:
+        lines += [
+            "",
+            "The first command notes what it took on that machine, downloads and builds with it, in `ENV/installed.tsv`:",
+            "",
+            "| step | seconds | MB |",
+            "| --- | ---: | ---: |",
+            *[f"| {step.name} | {step.seconds} | {step.megabytes:,} |" for step in steps],
+            f"| all | {sum(step.seconds for step in steps)} | {sum(step.megabytes for step in steps):,} |",
+        ]
+    if asking := _asking(measured, here):
+        slow = sorted((one for one in measured if one.machine == here), key=lambda one: -(one.seconds or 0))[:3]
+        told = listed([f"{one.peer.title} {(one.seconds or 0) / 60:.0f}" for one in slow])
+        lines += ["", f"The second takes {sum(seconds for seconds, _ in asking) / 60:.0f} minutes; the longest of them {told}."]
+    return lines
 
 
 def _elsewhere(measured: Sequence[Measured], here: str) -> str:

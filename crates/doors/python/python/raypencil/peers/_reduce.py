@@ -17,6 +17,9 @@ from ._question import Question, asked, judged
 #: How often a peer is asked at most while faces are left out, and while numbers are made shorter.
 _TRIES = 400
 
+#: On this many faces or fewer other rays at the same point are tried too: the more, the fewer faces there are.
+_FEW, _MOST_RAYS = 256, 512
+
 
 @dataclass(frozen=True, eq=False)
 class Case:
@@ -50,18 +53,80 @@ def _with_faces(case: Case, keep: NDArray[np.intp]) -> Case:
     return Case(case.vertices[used], faces.reshape(-1, 3).astype(np.int64), case.ray)
 
 
-def _fewer_faces(is_wrong: Callable[[Case], bool], case: Case, likely: set[int]) -> Case:
+def _aims(case: Case, point: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A point, and the corner and the edge next to it, which a ray may have met before they were rounded to the peer's types: (n, 3)."""
+    starts, ends = (case.vertices[np.roll(case.faces, k, axis=1)].reshape(-1, 3) for k in (0, 1))
+    along = ends - starts
+    with np.errstate(all="ignore"):
+        part = np.nan_to_num(np.clip(((point - starts) * along).sum(axis=1) / (along**2).sum(axis=1), 0, 1))
+    near = np.concatenate([starts, starts + part[:, None] * along])
+    away = np.abs(near - point).max(axis=1).reshape(2, -1)
+    found = [near[away[0].argmin()], near[len(starts) + away[1].argmin()]]
+    size = float(np.ptp(case.vertices, axis=0).max())
+    return np.stack([point, *(one for one, off in zip(found, away.min(axis=1), strict=True) if off < 1e-6 * size)])
+
+
+def _beside(case: Case, point: NDArray[np.float64]) -> Rays:
+    """Rays like that of a case, to the same point or what is next to it, from about there and the same way off: (n, 8)."""
+    aims = _aims(case, point)
+    way = point - case.ray[0:3]
+    distance = float(np.linalg.norm(way))
+    count = min(_MOST_RAYS, 64 * _FEW // len(case.faces))
+    draw = np.random.default_rng(count)
+    # From hardly moved to from anywhere on that side.
+    moved = way + distance * np.geomspace(1e-9, 1, count)[:, None] * draw.normal(size=(count, 3))
+    rays, ends = np.repeat(case.ray[None], count, axis=0), aims[np.arange(count) % len(aims)]
+    rays[:, 0:3] = ends - distance * moved / np.linalg.norm(moved, axis=1, keepdims=True)
+    scale = np.linalg.norm(case.ray[3:6]) / distance if distance > 0 else 0.0
+    rays[:, 3:6] = (ends - rays[:, 0:3]) * scale
+    return rays
+
+
+def _shown(peer: Peer, case: Case, point: NDArray[np.float64]) -> Case | None:
+    """A case at which a peer is wrong: this one, or one with another ray at the same point; ``None``: neither is found.
+
+    Some programs move a mesh to its middle, or sort its faces: with one face less they round otherwise, and this ray is answered
+    rightly, but one beside it wrongly.
+    """
+    if wrong_hit(peer, case) is not None:
+        return case
+    if len(case.faces) > _FEW:
+        return None
+    try:
+        question = asked(peer, Mesh(case.vertices, case.faces), _beside(case, point))
+        _, wrong = judged(peer, question, peer.first(question.mesh, question.rays))
+    except Exception:  # As for one ray.
+        return None
+    others = (Case(case.vertices, case.faces, question.rays[k]) for k in wrong.tolist())
+    return next((other for other in others if wrong_hit(peer, other) is not None), None)
+
+
+def _rings(case: Case, likely: set[int]) -> Iterator[NDArray[np.intp]]:
+    """The likely faces, those with their neighbours, and so on: faces that share corners, by place."""
+    _, corners = np.unique(case.vertices, axis=0, return_inverse=True)
+    places = corners.reshape(-1)[case.faces]
+    ring: NDArray[np.bool_] = np.isin(np.arange(len(places)), list(likely))
+    while 0 < (count := int(ring.sum())) <= _FEW and count < len(places):
+        yield np.flatnonzero(ring)
+        wider = np.asarray(np.isin(places, places[ring]).any(axis=1))
+        if wider.sum() == count:
+            return
+        ring = wider
+
+
+def _fewer_faces(shown: Callable[[Case], Case | None], case: Case, likely: set[int]) -> Case:
     """Leaves faces out, ever smaller parts of them, as long as the answer stays wrong."""
-    few = np.array(sorted(likely), dtype=np.intp)
-    if len(few) and is_wrong(_with_faces(case, few)):
-        case = _with_faces(case, few)
+    for ring in _rings(case, likely):
+        if (smaller := shown(_with_faces(case, ring))) is not None:
+            case = smaller
+            break
     size, tries = max(1, len(case.faces) // 2), 0
     while tries < _TRIES:
         start = 0
         while start < len(case.faces) and tries < _TRIES:
             keep = np.concatenate([np.arange(start), np.arange(min(start + size, len(case.faces)), len(case.faces))])
             tries += 1
-            if len(keep) and is_wrong(smaller := _with_faces(case, keep)):
+            if len(keep) and (smaller := shown(_with_faces(case, keep))) is not None:
                 case = smaller
             else:
                 start += size
@@ -127,13 +192,19 @@ def reduced(peer: Peer, case: Case) -> Case:
     told = wrong_hit(peer, case)
     if told is None:
         raise RaypencilError(f"{peer.name}: alone the ray is answered rightly")
-    likely = set(case.question(peer).nearest[0])
+    question = case.question(peer)
+    likely = set(question.nearest[0])
     likely |= set() if told.face is None or told.face[0] < 0 else {int(told.face[0])}
+    t = question.t[0] if np.isfinite(question.t[0]) else told.t[0]
+    point = question.rays[0, 0:3] + t * question.rays[0, 3:6]
 
     def is_wrong(one: Case) -> bool:
         return wrong_hit(peer, one) is not None
 
-    small = _fewer_faces(is_wrong, case, likely)
+    def shown(one: Case) -> Case | None:
+        return _shown(peer, one, point)
+
+    small = _fewer_faces(shown, case, likely)
     return _shorter_numbers(is_wrong, _on_a_grid(is_wrong, small, small.question(peer)))
 
 
