@@ -179,6 +179,11 @@ def test_what_a_peer_answers_is_counted() -> None:
     # A face to which a ray is parallel, but in whose plane it is not, is none by convention.
     beside = peers.asked(InPlane, mesh, np.array([[-1, 1, 0.5, 1, 0, 0]]))
     assert peers.judged(InPlane, beside, Hits(np.array([0]), np.array([1.0])))[0] == peers.Counts(1, invented=1, wrong=1)
+    # A face without an area is met by no ray, and to count it is a choice; of two rays only one is told such a face.
+    line = raypencil.Mesh([[0, 0, 0], [0, 0, 1], [0, 0, 2], [0, 4, 0]], [[0, 1, 2], [0, 1, 3]])
+    thin = peers.asked(Referee, line, np.array([[1.0, 0, 1.5, -1, 0, 0], [1, 5, 0.5, -1, 0, 0]]))
+    told_thin = peers.judged(Referee, thin, Hits(np.array([0, 1]), np.array([1.0, 1.0])))
+    assert told_thin[0] == peers.Counts(2, invented=1, wrong=1, convention=1) and told_thin[1].tolist() == [1]
     late = Hits(right.face, np.where(right.hit, right.t + 0.25, np.inf))
     assert peers.judged(Referee, question, late)[0] == peers.Counts(5, ranges=3)
     # Without faces it is t that is judged.

@@ -75,7 +75,8 @@ class Counts:
             another face. Of a peer that tells no face, `other` are ranges that rounding does not excuse.
         wrong: of these, how many are wrong by the rule of `raypencil check`.
         ranges: rays with a right face whose t is wrong by the same rule.
-        convention: rays that meet, as the peer has it, a face in whose plane they lie. They are in none of the others.
+        convention: rays that meet, as the peer has it, a face in whose plane they lie, or one without an area. They are in none of
+            the others.
     """
 
     rays: int = 0
@@ -142,12 +143,22 @@ def asked(peer: Peer | type[Peer], mesh: Mesh, rays: Rays) -> Question:
     return Question(Mesh(vertices, mesh.faces), read[fits], np.flatnonzero(fits))
 
 
+def _normal(mesh: Mesh, face: int) -> list[Fraction]:
+    """The normal of a face, as long as twice its area, exactly."""
+    a, b, c = ([Fraction(x) for x in corner] for corner in mesh.vertices[mesh.faces[face]].tolist())
+    u, v = ([q - p for p, q in zip(a, end, strict=True)] for end in (b, c))
+    return [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+
+
+def has_no_area(mesh: Mesh, face: int) -> bool:
+    """Whether the corners of a face lie in a line, exactly."""
+    return not any(_normal(mesh, face))
+
+
 def lies_in_plane(mesh: Mesh, face: int, ray: NDArray[np.float64]) -> bool:
     """Whether a ray lies in the plane of a face, exactly."""
-    a, b, c = ([Fraction(x) for x in corner] for corner in mesh.vertices[mesh.faces[face]].tolist())
+    a, normal = [Fraction(x) for x in mesh.vertices[mesh.faces[face][0]].tolist()], _normal(mesh, face)
     start, way = ([Fraction(x) for x in part] for part in (ray[0:3].tolist(), ray[3:6].tolist()))
-    u, v = ([q - p for p, q in zip(a, end, strict=True)] for end in (b, c))
-    normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
     along = sum(n * d for n, d in zip(normal, way, strict=True))
     off = sum(n * (p - q) for n, p, q in zip(normal, a, start, strict=True))
     return along == 0 and off == 0
@@ -175,9 +186,10 @@ def judged(peer: Peer | type[Peer], question: Question, told: Hits) -> tuple[Cou
     else:
         other = np.array([h and bool(n) and int(f) not in n for h, f, n in zip(hit, told.face, nearest, strict=True)])
         is_wrong = judge(question.mesh, question.rays, {"face": told.face}, peer.arithmetic, explain=False).classes == WRONG
-        if peer.meets_in_plane:
-            for k in np.flatnonzero(invented | other):
-                by_convention[k] = lies_in_plane(question.mesh, int(told.face[k]), question.rays[k])
+        for k in np.flatnonzero(invented | other):
+            face = int(told.face[k])
+            in_plane = peer.meets_in_plane and lies_in_plane(question.mesh, face, question.rays[k])
+            by_convention[k] = in_plane or has_no_area(question.mesh, face)
     ranges = both & ~is_wrong & ~(missed | invented | other)
     parts = (missed, invented, other, is_wrong, ranges)
     counts = [len(hit), *(int((one & ~by_convention).sum()) for one in parts), int(by_convention.sum())]

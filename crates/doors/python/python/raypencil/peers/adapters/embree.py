@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +13,8 @@ from .._peer import Built, Hits, Peer, Rays, hits, need, single
 
 #: The cause of Embree's threshold, wherever Embree is asked. A face alone, which has no box above it, is met by any direction.
 SHORT_PARTS = (
-    "Embree's test of boxes takes a part of the direction below 1e-18 for 1e-18 (`zero_fix`, common/math/vec3fa.h; `min_rcp_input`,"
-    " common/math/constants.h)."
+    "Embree's test of boxes takes a part of the direction below 1e-18, of either sign, for +1e-18 (`zero_fix`, common/math/vec3fa.h;"
+    " `min_rcp_input`, common/math/constants.h)."
 )
 
 
@@ -22,7 +22,11 @@ class Embree(Peer):
     """Embree as trimesh and others build its scenes: without its flag for robust traversal."""
 
     name, title, package = "embree", "Embree", "embreex"
-    causes = (SHORT_PARTS,)
+    causes: ClassVar[tuple[str, ...]] = (SHORT_PARTS,)
+    conventions: ClassVar[tuple[str, ...]] = ("One ray is asked at a time: the bindings have no packets.",)
+    advice: ClassVar[tuple[str, ...]] = (
+        "turn robust on (`RTC_SCENE_FLAG_ROBUST`; of embreex `EmbreeScene(robust=True)`): then none of *tiny* and *huge* is lost",
+    )
     arithmetic = mesh_type = rays_type = "f32"
     is_robust = False
 
@@ -49,4 +53,5 @@ class EmbreeRobust(Embree):
     """Embree with RTC_SCENE_FLAG_ROBUST."""
 
     name, title = "embree-robust", "Embree, robust"
+    advice = ()
     is_robust = True

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -34,6 +34,21 @@ class MeshLib(Peer):
             if found.proj.face.valid():
                 face[k], t[k] = found.proj.face.get(), found.distanceAlongLine
         return hits(face, t, rays)
+
+    def all(self, mesh: Mesh, rays: Rays) -> list[list[tuple[int, float]]] | None:
+        mr, part, _ = self.build(mesh)
+        line, vector = getattr(mr, f"Line3{self.kind}"), getattr(mr, f"Vector3{self.kind}")
+        told = []
+        for ray in rays.tolist():
+            found: list[tuple[int, float]] = []
+
+            def meet(hit: Any, found: list[tuple[int, float]] = found) -> bool:
+                found.append((hit.proj.face.get(), hit.distanceAlongLine))
+                return True
+
+            mr.rayMeshIntersectAll(part, line(vector(*ray[0:3]), vector(*ray[3:6])), mr.func_bool_from_MeshIntersectionResult(meet))
+            told.append(sorted(found, key=lambda hit: hit[1]))
+        return told
 
 
 class MeshLibDouble(MeshLib):

@@ -22,6 +22,9 @@ class MitsubaScalar(Peer):
         "Its Embree is built to leave out rays with a part of origin or direction beyond 1.844e18 (`EMBREE_IGNORE_INVALID_RAYS`,"
         " ext/CMakeLists.txt; `FLT_LARGE`, Embree's common/math/constants.h).",
     )
+    advice: ClassVar[tuple[str, ...]] = (
+        "turn robust on (`embree_use_robust_intersections` of the scene): then none of *tiny* and *huge* is lost",
+    )
     arithmetic = mesh_type = rays_type = "f32"
     variant = "scalar_rgb"
 
@@ -83,6 +86,7 @@ class MitsubaCuda(MitsubaLlvm):
 
     name, title, variant = "mitsuba-cuda", "Mitsuba, cuda_ad_rgb", "cuda_ad_rgb"
     causes = ()
+    advice = ()
 
     def device(self) -> str:
         return card()

@@ -20,7 +20,9 @@ class MuJoCo(Peer):
     )
     causes = (
         "Its test of triangles takes direction times twice the face's area below 1e-15 for 0 (`ray_triangle`, src/engine/engine_ray.c;"
-        " `mjMINVAL`); the shortest direction is the root of that.",
+        " `mjMINVAL`). The shortest direction that it answers is the root of 1e-15 long, at any size of the mesh.",
+        "The boxes of its tree (`mjModel.bvh_aabb`) are those of the corners in double precision, and the corners are kept in single"
+        " (`mjModel.mesh_vert`): a face pokes out of its box, and a ray that meets it there, as at vertices, passes (`mju_raySlab`).",
     )
 
     def build(self, mesh: Mesh) -> Built:

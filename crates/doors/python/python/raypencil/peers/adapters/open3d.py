@@ -15,6 +15,7 @@ class Open3D(Peer):
 
     name, title, package = "open3d", "Open3D", "open3d"
     causes = (SHORT_PARTS,)
+    conventions = ("It asks Embree with its flag for robust traversal (cpp/open3d/t/geometry/RaycastingScene.cpp).",)
     arithmetic = mesh_type = rays_type = "f32"
 
     def build(self, mesh: Mesh) -> Built:
@@ -37,3 +38,10 @@ class Open3D(Peer):
             asked = o3d.core.Tensor(single(rays[some, 0:6]))
             told[some] = scene.test_occlusions(asked, tnear=0.0, tfar=float(end)).numpy()
         return told
+
+    def all(self, mesh: Mesh, rays: Rays) -> list[list[tuple[int, float]]] | None:
+        o3d = need("open3d", self.package)
+        told = self.build(mesh).list_intersections(o3d.core.Tensor(single(rays[:, 0:6])))
+        faces, ts, ends = (told[name].numpy().tolist() for name in ("primitive_ids", "t_hit", "ray_splits"))
+        parts = (slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True))
+        return [sorted(zip(faces[part], ts[part], strict=True), key=lambda hit: hit[1]) for part in parts]

@@ -27,9 +27,13 @@ class Trimesh(Peer):
     causes: ClassVar[tuple[str, ...]] = (
         "`planes_lines` (intersections.py) drops rays whose direction times the face's unit normal is at most 1e-05; `unitize` (util.py),"
         " which makes that normal, takes a cross product at most 1e-13 long for 0.",
-        "`ray_bounds` (ray/ray_triangle.py) looks for faces from t = 1e-05 on: what is nearer is lost.",
+        "`ray_bounds` (ray/ray_triangle.py) looks for faces from t = 1e-05 on, and 1e-05 around: with a long direction what is nearer is"
+        " lost.",
+        "Of hits whose points agree to 1e-08 `intersects_id(..., return_locations=True)` keeps one, which may be the farther one"
+        " (`unique_rows`, grouping.py): so on *nearly-coincident*, of which `intersects_first` loses one.",
         "`points_to_barycentric` (triangles.py) subtracts products of squared edges, which cancel on thin faces.",
     )
+    advice: ClassVar[tuple[str, ...]] = ("ask `intersects_first` where the nearest face is enough",)
     remedies: ClassVar[Mapping[tuple[str, str], str]] = {
         ("angle", "below"): "make directions longer for grazing rays, while no hit is nearer than 1e-05 of them",
         ("length", "below"): _AS_LONG,
@@ -78,6 +82,8 @@ class TrimeshEmbree(Trimesh):
     causes = (
         "`unitize` (util.py), which makes the faces' normals and the directions 1 long, takes a vector at most 1e-13 long for 0; without a"
         " normal a face has no points.",
+        "`planes_lines` (intersections.py), which makes the points, drops those of rays at 1e-05 radians or less to the face: so all of"
+        " *grazing*, which single precision excuses.",
     )
     advice = ("ask `intersects_first` where faces are enough",)
     remedies: ClassVar[Mapping[tuple[str, str], str]] = {}

@@ -16,6 +16,17 @@ _TOLERANCE = "give a tolerance of about 1e-12 of the mesh's width, as in the row
 
 _LONGER = "give longer segments"
 
+#: The cause of what an OBB tree loses on wide meshes, whoever asks it.
+_LARGE_BOXES = (
+    "`vtkOBBTree::ComputeOBB` measures along axes 1 long by `vtkLine::DistanceToLine` (Common/DataModel/vtkLine.cxx), which answers"
+    " `VTK_DOUBLE_MAX` from 1e+05 on: boxes of a mesh that reaches farther from its middle are as large as that, and drop all rays or none."
+)
+
+_BESIDE_EDGES = (
+    "`vtkTriangle::IntersectWithLine` (Common/DataModel/vtkTriangle.cxx) rounds the point on the plane, and then asks whether it is"
+    " within the tolerance of the triangle: beside an edge it may be in neither face."
+)
+
 
 class VtkObbTree(Peer):
     """`vtkOBBTree`, by the call that all locators have."""
@@ -25,10 +36,7 @@ class VtkObbTree(Peer):
     is_segment = True
     meets_in_plane = True
     conventions: ClassVar[tuple[str, ...]] = ("It takes a tolerance, which is 0 here.",)
-    causes: ClassVar[tuple[str, ...]] = (
-        "`vtkTriangle::IntersectWithLine` (Common/DataModel/vtkTriangle.cxx) rounds the point on the plane, and then asks whether it is"
-        " within the tolerance of the triangle: beside an edge it may be in neither face.",
-    )
+    causes: ClassVar[tuple[str, ...]] = (_BESIDE_EDGES, _LARGE_BOXES)
     advice: ClassVar[tuple[str, ...]] = (_TOLERANCE,)
     # On wide meshes it helps too.
     remedies: ClassVar[Mapping[tuple[str, str], str]] = {("scale", "above"): _TOLERANCE}
@@ -68,6 +76,19 @@ class VtkObbTree(Peer):
                 face[k], t[k] = cell.get(), at.get() * length[k]
         return hits(face, t, rays)
 
+    def all(self, mesh: Mesh, rays: Rays) -> list[list[tuple[int, float]]] | None:
+        vtk, locator, _, vertices, tolerance = self.build(mesh)
+        ends = rays[:, 0:3] + segment_length(vertices, rays)[:, None] * rays[:, 3:6]
+        points, cells = vtk.vtkPoints(), vtk.vtkIdList()
+        points.SetDataTypeToDouble()
+        told = []
+        for ray, end in zip(rays, ends, strict=True):
+            locator.IntersectWithLine(ray[0:3].tolist(), end.tolist(), tolerance, points, cells)
+            axis = int(np.argmax(np.abs(ray[3:6])))
+            ts = [(points.GetPoint(k)[axis] - ray[axis]) / ray[3 + axis] for k in range(points.GetNumberOfPoints())]
+            told.append(sorted(((cells.GetId(k), float(t)) for k, t in enumerate(ts)), key=lambda hit: hit[1]))
+        return told
+
 
 class VtkObbTreeAll(VtkObbTree):
     """`vtkOBBTree`, by its own call for all points on a line, as `pyvista.PolyData.ray_trace` has it."""
@@ -77,7 +98,8 @@ class VtkObbTreeAll(VtkObbTree):
     causes = (
         "Its test of triangles (`vtkOBBTreeLineIntersectsTriangle`, Filters/General/vtkOBBTree.cxx) counts a point on an edge to none of the"
         " faces beside it, and takes unit normal times segment of 1e-06 or less for 0. Its tolerance is 0, and since VTK 9.7 `SetTolerance`"
-        " changes nothing.",
+        " changes nothing; 9.6 took the tree's own tolerance, which met the edge unless it was set to 0.",
+        _LARGE_BOXES,
     )
     advice = ("ask VTK's static cell locator with a tolerance instead",)
     remedies: ClassVar[Mapping[tuple[str, str], str]] = {("scale", "below"): _LONGER, ("angle", "below"): _LONGER}
@@ -100,12 +122,14 @@ class VtkCellLocator(VtkObbTree):
     """`vtkCellLocator`."""
 
     name, title, kind = "vtk-cells", "VTK, cell locator", "vtkCellLocator"
+    causes = (_BESIDE_EDGES,)
 
 
 class VtkStaticCellLocator(VtkObbTree):
     """`vtkStaticCellLocator`."""
 
     name, title, kind = "vtk-static", "VTK, static cell locator", "vtkStaticCellLocator"
+    causes: ClassVar[tuple[str, ...]] = (_BESIDE_EDGES,)
 
 
 class VtkTolerance(VtkStaticCellLocator):
@@ -122,9 +146,11 @@ class VtkBspTree(VtkObbTree):
     """`vtkModifiedBSPTree`."""
 
     name, title, kind = "vtk-bsp", "VTK, BSP tree", "vtkModifiedBSPTree"
+    causes = (_BESIDE_EDGES,)
 
 
 class VtkCellTree(VtkObbTree):
     """`vtkCellTreeLocator`."""
 
     name, title, kind = "vtk-cell-tree", "VTK, cell tree", "vtkCellTreeLocator"
+    causes = (_BESIDE_EDGES,)
