@@ -388,6 +388,14 @@ def test_the_command(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None
     assert "on a machine of a card, 16 cores," in capsys.readouterr().out
     assert f"on a machine of {machine()}," in text and "On another machine" not in text
     assert _command.main(["table", "tracer", "--elsewhere", str(tmp_path / "none")]) == 2 and "none` is no folder" in capsys.readouterr().err
+    # A speed that is asked again is kept where it is higher, and only then.
+    slow = {**answers, "answers": [*answers["answers"][:-1], {"answer": {"rays": 1, "seconds": 9.0, "faces": 8192}}]}
+    for given, is_kept in ((slow, False), ({**slow, "answers": [*slow["answers"][:-1], {"answer": {"rays": 10**12, "seconds": 1.0}}]}, True)):
+        (kept / "tracer.json").write_text(json.dumps(given))
+        assert _command.main(["table", "tracer", "--kept", str(kept), "--time-again"]) == 0
+        now = json.loads((kept / "tracer.json").read_text())
+        assert (now == given) is is_kept and now["answers"][:-1] == answers["answers"][:-1]
+    assert _command.main(["table", "tracer", "--time-again"]) == 2 and "needs `--kept DIR`" in capsys.readouterr().err
     # Answers to other questions are refused.
     (kept / "tracer.json").write_text('{"jobs": [], "version": "", "machine": "", "answers": []}')
     assert _command.main(["table", "tracer", "--kept", str(kept)]) == 2

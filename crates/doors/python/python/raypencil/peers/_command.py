@@ -11,7 +11,7 @@ from pathlib import Path
 from .._errors import RaypencilError
 from ._figures import laws_svg, speed_svg
 from ._known import LEFT_OUT, every_peer, peer
-from ._measure import Measured, Step, installed, measure
+from ._measure import Measured, Step, installed, measure, time_again
 from ._page import LAWS_FIGURE, SPEED_FIGURE, cell, how_rounded, page, paragraph
 from ._peer import Unavailable
 
@@ -30,6 +30,9 @@ def _parser() -> argparse.ArgumentParser:
     table.add_argument("--kept", type=Path, metavar="DIR", help="keeps the answers; a peer that is in it is not asked again")
     table.add_argument(
         "--elsewhere", type=Path, metavar="DIR", help="what `--kept` kept on another machine; its peers are not asked here"
+    )
+    table.add_argument(
+        "--time-again", action="store_true", help="asks the speed of each peer that `--kept` has once more, and keeps the higher one"
     )
     hunt = commands.add_parser("hunt", help="find wrong rays of a peer on a mesh, and write reproducers")
     hunt.add_argument("peer", metavar="PEER")
@@ -79,11 +82,15 @@ def _ask(name: str) -> int:
     return 0 if one.total.wrong == 0 else 1
 
 
-def _table(names: Sequence[str], output: Path | None, kept: Path | None, elsewhere: Path | None) -> int:
+def _table(names: Sequence[str], output: Path | None, kept: Path | None, elsewhere: Path | None, time: bool) -> int:
     for name in names:
         peer(name)
     if elsewhere is not None and not elsewhere.is_dir():
         raise RaypencilError(f"`--elsewhere {elsewhere}` is no folder")
+    if time:
+        if kept is None:
+            raise RaypencilError("`--time-again` needs `--kept DIR`: it times what is kept")
+        time_again(names or [one.name for one in every_peer()], kept, lambda line: print(f"timing {line}", file=sys.stderr, flush=True))
     measured, missing, steps = _measured(names or [one.name for one in every_peer()], kept, elsewhere)
     if not measured:
         raise RaypencilError("none of these peers could be asked: `raypencil-peers list` says why")
@@ -109,7 +116,7 @@ def main(words: Sequence[str] | None = None) -> int:
         if given.command == "ask":
             return _ask(given.peer)
         if given.command == "table":
-            return _table(given.peers, given.output, given.kept, given.elsewhere)
+            return _table(given.peers, given.output, given.kept, given.elsewhere, given.time_again)
         from ._hunt import hunt
 
         return hunt(given.peer, given.mesh, given.terrains, given.seed, given.rays, given.most, given.output)

@@ -169,6 +169,30 @@ def measure(
     return measured, missing
 
 
+def time_again(names: Sequence[str], kept: Path, tell: Callable[[str], None] = lambda line: None) -> None:
+    """Asks the speed of peers once more, one after the other, and keeps the higher one: other work on a machine only makes it lower.
+
+    Args:
+        names: of peers.
+        kept: a folder of what they answered; peers that are not in it are left alone.
+        tell: is called with the name of each peer that is asked.
+    """
+    for name in names:
+        file = kept / f"{name}.json"
+        if not file.is_file():
+            continue
+        tell(peer(name).title)
+        data = json.loads(file.read_text(encoding="utf-8"))
+        at = next((k for k, job in enumerate(data["jobs"]) if "speed" in job), None)
+        (told,) = work(name, jobs()[-1:])
+        if at is None or "answer" not in told:
+            continue
+        old, new = data["answers"][at].get("answer"), told["answer"]
+        if old is None or new["rays"] / new["seconds"] > old["rays"] / old["seconds"]:
+            data["answers"][at] = told
+            file.write_text(json.dumps(data) + "\n", encoding="utf-8")
+
+
 def _load() -> float | None:
     """Processes that want a core, a mean of the last minute; ``None`` on a system that does not tell."""
     return round(os.getloadavg()[0], 1) if hasattr(os, "getloadavg") else None

@@ -180,7 +180,7 @@ def page(measured: Sequence[Measured], missing: Mapping[str, str], steps: Sequen
         f"Rays a second: on 8192 faces, on a machine of {here}, {_when(measured, here)}; threads as each program takes them by itself,"
         " and through Python or Node where that is how it is called; crates are asked from Rust, in one thread. It says what a call costs,"
         " not what an engine can do. The best of"
-        " five runs or more; read the power of ten, for other work on the machine makes some rows slower." + _elsewhere(measured, here),
+        " five runs or more (`--time-again` adds five); read the power of ten, for other work on the machine makes some rows slower." + _elsewhere(measured, here),
         "",
         f"![Wrong rays against rays a second]({SPEED_FIGURE})",
         "",
