@@ -163,7 +163,8 @@ def page(measured: Sequence[Measured], missing: Mapping[str, str], steps: Sequen
         "-->",
         "",
         f"{len(others)} ways to ask {len(packages)} packages the rays of `data/rays/hard` ([what they are](hard-rays.md)). Made by"
-        " `raypencil-peers table`, as the page's end has it; `raypencil-peers ask NAME` shows one of them.",
+        " `raypencil-peers table`, as the page's end has it; `raypencil-peers ask NAME` shows one of them, and"
+        " [peers-hunts.md](peers-hunts.md) wrong rays on meshes of other people.",
         "",
         "Every program is asked what it can read: mesh and rays are rounded to its types first, and the truth is that of the rounded"
         " question, by `raypencil cast`, which is exact. So what is counted is no fault of the input. Rays with a t_min are left out,"

@@ -25,7 +25,8 @@ class Embree(Peer):
     causes: ClassVar[tuple[str, ...]] = (SHORT_PARTS,)
     conventions: ClassVar[tuple[str, ...]] = ("One ray is asked at a time: the bindings have no packets.",)
     advice: ClassVar[tuple[str, ...]] = (
-        "turn robust on (`RTC_SCENE_FLAG_ROBUST`; of embreex `EmbreeScene(robust=True)`): then none of *tiny* and *huge* is lost",
+        "turn robust on (`RTC_SCENE_FLAG_ROBUST`; of embreex `EmbreeScene(robust=True)`): then none of *tiny* and *huge* is lost, and far"
+        " fewer rays through edges and vertices of other people's meshes ([peers-hunts.md](peers-hunts.md))",
     )
     arithmetic = mesh_type = rays_type = "f32"
     is_robust = False

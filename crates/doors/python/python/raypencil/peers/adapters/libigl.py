@@ -12,6 +12,9 @@ _CAUSES = (
     "Its test of triangles takes a determinant below 1e-06 for 0, which is the product of two edges, the direction's length and the"
     " sine of the angle (`IGL_RAY_TRI_EPSILON`, include/igl/raytri.c).",
 )
+_SINGLE = (
+    "It tells t in single precision, whatever it computes in, and orders hits by it: so on *nearly-coincident*, where the faces tie."
+)
 _LONGER = "make directions 1e12 long, and scale t: the determinant grows with them"
 _REMEDIES = {
     ("scale", "below"): _LONGER,
@@ -25,7 +28,7 @@ class LibiglTree(Peer):
     """`igl.AABB.intersect_ray_first`."""
 
     name, title, package = "libigl", "libigl, AABB", "libigl"
-    conventions = ("It tells t in single precision, whatever it computes in.",)
+    conventions = (_SINGLE,)
     causes, remedies = _CAUSES, _REMEDIES
     arithmetic = mesh_type = rays_type = "f64"
 
@@ -52,7 +55,7 @@ class LibiglBruteForce(Peer):
 
     name, title, package = "libigl-brute", "libigl, every face", "libigl"
     conventions = (
-        "It tells t in single precision, whatever it computes in.",
+        _SINGLE,
         "`ray_mesh_intersect(..., first=True)` tells a hit of unwritten memory where there is none; so all hits are asked.",
     )
     causes, remedies = _CAUSES, _REMEDIES
