@@ -192,6 +192,24 @@ def test_what_a_peer_answers_is_counted() -> None:
     assert (counts + counts).rays == 10 and counts.differing == 4
 
 
+def test_a_hit_without_a_face_is_excused_as_one_with_it() -> None:
+    class Single(Referee):
+        arithmetic = "f32"
+
+    # A floor, and a wall that the ray passes by a billionth, all but along it: moved by its rounding it meets the wall anywhere.
+    off, lean = 2.0**-30, 2.0**-24
+    corners = np.array([[-9, -9, 0], [9, -9, 0], [0, 9, 0], [off, -1, 1], [off, 1, 1], [off + lean, 0, 2]])
+    mesh = raypencil.Mesh(corners, [[0, 1, 2], [3, 4, 5]])
+    question = peers.asked(Single, mesh, np.array([[x, 0, 3, 0, 0, -1] for x in (0.0, 0, 4, 0)]))
+    assert question.nearest == [{0}] * 4 and question.t.tolist() == [3] * 4
+    ts = np.array([3, 1.5, 2.5, np.inf])
+    with_faces = peers.judged(Single, question, Hits(np.array([0, 1, 1, -1]), ts))
+    without = peers.judged(Single, question, Hits(None, ts))
+    # On the floor; on the wall; where there is nothing; a miss.
+    assert with_faces[1].tolist() == [2, 3] and without[1].tolist() == [2, 3]
+    assert without[0] == peers.Counts(4, missed=1, other=2, wrong=2)
+
+
 def test_the_end_of_a_ray_belongs_to_it() -> None:
     from raypencil.peers._peer import hits
 

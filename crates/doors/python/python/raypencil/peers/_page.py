@@ -173,8 +173,8 @@ def page(measured: Sequence[Measured], missing: Mapping[str, str], steps: Sequen
         " right for a ray moved sideways by 16 u S (u: the unit roundoff of the program's own arithmetic; S: the largest coordinate"
         " plus the origin's; [cast.md](guide/cast.md)). *t wrong*: the face is right, and t off by more than rounding. *Convention*:"
         " the program counts a face in whose plane the ray lies, or one without an area (rounded to single precision the mesh of"
-        " *far-mesh* has no others); that is a choice, not a fault. A program that tells no face is judged by t. raypencil's own rows are"
-        " by the same rule.",
+        " *far-mesh* has no others); that is a choice, not a fault. A program that tells no face is judged by t, which is excused where it"
+        " would be on some face. raypencil's own rows are by the same rule.",
         "",
         *_table(measured),
         "",

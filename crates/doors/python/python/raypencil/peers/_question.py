@@ -19,6 +19,9 @@ from .._mesh import Mesh
 from ._peer import Hits, Peer, Rays
 
 
+#: Of a peer that tells no face, so many of the faces next to its hit are tried.
+_NEAR = 32
+
 #: The largest coordinate, and the largest end of a ray, that the referee takes.
 _LARGEST = 1e30
 
@@ -164,6 +167,29 @@ def lies_in_plane(mesh: Mesh, face: int, ray: NDArray[np.float64]) -> bool:
     return along == 0 and off == 0
 
 
+def _with_a_face(peer: Peer | type[Peer], question: Question, told: Hits, wrong: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Of the hits of a peer that tells no face, those whose t is right on some face, for a ray moved as the rule allows.
+
+    A t alone is compared with that of the faces that the ray itself meets.
+    """
+    excused = np.zeros(len(wrong), dtype=bool)
+    rays = np.flatnonzero(wrong & told.hit)
+    if len(rays) == 0:
+        return excused
+    corners = np.asarray(question.mesh.vertices)[question.mesh.faces]
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    near = []
+    for k in rays:
+        point = question.rays[k, 0:3] + told.t[k] * question.rays[k, 3:6]
+        away = np.maximum(np.maximum(low - point, point - high), 0).max(axis=1)
+        near.append(np.argsort(away, kind="stable")[:_NEAR])
+    of, face = np.repeat(rays, [len(faces) for faces in near]), np.concatenate(near)
+    answers = {"face": face.astype(np.int64), "t": told.t[of]}
+    right = judge(question.mesh, question.rays[of], answers, peer.arithmetic, explain=False).classes != WRONG
+    excused[of[right]] = True
+    return excused
+
+
 def judged(peer: Peer | type[Peer], question: Question, told: Hits) -> tuple[Counts, NDArray[np.intp]]:
     """Counts a peer's answers, and judges its first hits by the rule of `raypencil check`, at the peer's own arithmetic.
 
@@ -182,7 +208,7 @@ def judged(peer: Peer | type[Peer], question: Question, told: Hits) -> tuple[Cou
     missed, invented = is_hit & ~hit, ~is_hit & hit
     by_convention = np.zeros(len(hit), dtype=bool)
     if told.face is None:
-        is_wrong, other = both, is_hit & hit & both
+        is_wrong, other = both & ~_with_a_face(peer, question, told, both), is_hit & hit & both
     else:
         other = np.array([h and bool(n) and int(f) not in n for h, f, n in zip(hit, told.face, nearest, strict=True)])
         is_wrong = judge(question.mesh, question.rays, {"face": told.face}, peer.arithmetic, explain=False).classes == WRONG

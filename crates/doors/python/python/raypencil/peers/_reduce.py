@@ -53,17 +53,20 @@ def _with_faces(case: Case, keep: NDArray[np.intp]) -> Case:
     return Case(case.vertices[used], faces.reshape(-1, 3).astype(np.int64), case.ray)
 
 
-def _aims(case: Case, point: NDArray[np.float64]) -> NDArray[np.float64]:
-    """A point, and the corner and the edge next to it, which a ray may have met before they were rounded to the peer's types: (n, 3)."""
+def _beside_edges(case: Case, point: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The start of each edge, three for each face, and the place on it next to a point: (3 faces, 3) each."""
     starts, ends = (case.vertices[np.roll(case.faces, k, axis=1)].reshape(-1, 3) for k in (0, 1))
     along = ends - starts
     with np.errstate(all="ignore"):
         part = np.nan_to_num(np.clip(((point - starts) * along).sum(axis=1) / (along**2).sum(axis=1), 0, 1))
-    near = np.concatenate([starts, starts + part[:, None] * along])
-    away = np.abs(near - point).max(axis=1).reshape(2, -1)
-    found = [near[away[0].argmin()], near[len(starts) + away[1].argmin()]]
+    return starts, starts + part[:, None] * along
+
+
+def _aims(case: Case, point: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A point, and the corner and the edge next to it, which a ray may have met before they were rounded to the peer's types: (n, 3)."""
+    found = [near[np.abs(near - point).max(axis=1).argmin()] for near in _beside_edges(case, point)]
     size = float(np.ptp(case.vertices, axis=0).max())
-    return np.stack([point, *(one for one, off in zip(found, away.min(axis=1), strict=True) if off < 1e-6 * size)])
+    return np.stack([point, *(one for one in found if np.abs(one - point).max() < 1e-6 * size)])
 
 
 def _beside(case: Case, point: NDArray[np.float64]) -> Rays:
@@ -195,8 +198,10 @@ def reduced(peer: Peer, case: Case) -> Case:
     question = case.question(peer)
     likely = set(question.nearest[0])
     likely |= set() if told.face is None or told.face[0] < 0 else {int(told.face[0])}
-    t = question.t[0] if np.isfinite(question.t[0]) else told.t[0]
-    point = question.rays[0, 0:3] + t * question.rays[0, 3:6]
+    # Where the answers part: at the nearer one.
+    point = question.rays[0, 0:3] + min(question.t[0], told.t[0]) * question.rays[0, 3:6]
+    if told.face is None and told.t[0] < question.t[0]:
+        likely.add(int(np.abs(_beside_edges(case, point)[1] - point).max(axis=1).argmin() // 3))
 
     def is_wrong(one: Case) -> bool:
         return wrong_hit(peer, one) is not None
