@@ -64,10 +64,13 @@ pub struct BeamReturns {
 impl BeamReturns {
     /// The returns of a set; `None` if it asks for none.
     pub fn of(answers: &Answers, set: &NamedRaySet) -> Option<Self> {
-        let (wanted, weights) = (set.returns?, set.weights.as_ref()?);
+        Some(Self::of_first(&answers.first, set.returns?, set.weights.as_ref()?))
+    }
+
+    /// The same from what is read by each ray; beams have as many rays as there are weights.
+    pub(crate) fn of_first(first: &[Reading<FirstHit>], wanted: Returns, weights: &[f64]) -> Self {
         let rays_of_beam = weights.len();
-        let beams: Vec<Beam> = answers
-            .first
+        let beams: Vec<Beam> = first
             .par_chunks(rays_of_beam)
             .enumerate()
             .map(|(index, reads)| Beam::of(reads, index * rays_of_beam, weights, &wanted))
@@ -78,7 +81,7 @@ impl BeamReturns {
             rays_of_beam,
             told: Vec::with_capacity(beams.len() * most),
             footprints: Vec::with_capacity(beams.len()),
-            of_rays: Vec::with_capacity(answers.first.len()),
+            of_rays: Vec::with_capacity(first.len()),
         };
         for Beam { told, footprint, of_rays } in beams {
             let none = most - told.len();
@@ -86,7 +89,7 @@ impl BeamReturns {
             all.footprints.push(footprint);
             all.of_rays.extend(of_rays);
         }
-        Some(all)
+        all
     }
 
     /// Places for returns of a beam: how many are told at most.
@@ -147,14 +150,8 @@ impl BeamReturns {
     /// What was asked, and the counts.
     pub fn json(&self) -> Value {
         let [beams, with_one, mixed, told] = self.counts();
-        let keep = match self.wanted.keep {
-            Keep::First => json!("first"),
-            Keep::Strongest => json!("strongest"),
-            Keep::Last => json!("last"),
-            Keep::UpTo(most) => json!(most),
-        };
         json!({
-            "keep": keep,
+            "keep": keep_json(self.wanted.keep),
             "separationM": self.wanted.separation_m,
             "raysOfFootprint": self.rays_of_beam,
             "footprints": beams,
@@ -162,6 +159,27 @@ impl BeamReturns {
             "mixed": mixed,
             "told": told,
         })
+    }
+}
+
+/// Which returns are told, as in a file of rays.
+pub(crate) fn keep_json(keep: Keep) -> Value {
+    match keep {
+        Keep::First => json!("first"),
+        Keep::Strongest => json!("strongest"),
+        Keep::Last => json!("last"),
+        Keep::UpTo(most) => json!(most),
+    }
+}
+
+/// The same from a file; `None`: it is no such rule.
+pub(crate) fn keep_of_json(value: &Value) -> Option<Keep> {
+    match (value.as_str(), value.as_u64()) {
+        (Some("first"), _) => Some(Keep::First),
+        (Some("strongest"), _) => Some(Keep::Strongest),
+        (Some("last"), _) => Some(Keep::Last),
+        (None, Some(most)) => Some(Keep::UpTo(most)),
+        _ => None,
     }
 }
 

@@ -250,6 +250,17 @@ fn write_returns(
     folder.write("return.share_other", &places, &other.collect::<Vec<_>>())
 }
 
+/// The same into a folder, for a pack; their names.
+pub(crate) fn write_beam_returns(
+    folder: &Path,
+    returns: &BeamReturns,
+    shape: &[u64],
+) -> Result<Vec<String>, FileError> {
+    let mut arrays = Vec::new();
+    write_returns(&mut ArrayFolder { folder, arrays: &mut arrays }, returns, shape)?;
+    Ok(arrays)
+}
+
 /// The folder and the names of the arrays written to it.
 struct ArrayFolder<'a> {
     folder: &'a Path,

@@ -112,6 +112,19 @@ impl Stated {
     }
 }
 
+/// How far rounding may move each part of a face's normal.
+pub(crate) fn normal_error(
+    exact: &ExactCast<'_>,
+    mesh: &Triangles,
+    ray: &CastRay,
+    face: FaceId,
+    precision: Precision,
+) -> f64 {
+    let [a, b, c] = mesh.corners(face);
+    let shortest = [b - a, c - b, a - c].map(DVec3::length).into_iter().fold(f64::INFINITY, f64::min);
+    aspect([a, b, c]) * (16.0 * precision.unit_roundoff + exact.lateral_error(ray, precision) / shortest)
+}
+
 /// One ray, judged.
 struct Judged {
     verdict: RayVerdict,
@@ -307,9 +320,7 @@ impl Judge<'_> {
         let edges = [b - a, c - b, a - c].map(DVec3::length);
         let doubled_area = (b - a).cross(c - a).length();
         let longest = edges[0].max(edges[1]).max(edges[2]);
-        let shortest = edges[0].min(edges[1]).min(edges[2]);
-        let kappa = aspect([a, b, c]);
-        let normal = kappa * (16.0 * u + lateral / shortest);
+        let normal = normal_error(self.exact, self.mesh, ray, hit.face, self.precision);
         match value {
             CastValue::T => (range + of_storing) / length,
             CastValue::Range => range + of_storing,

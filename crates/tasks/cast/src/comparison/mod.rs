@@ -14,6 +14,7 @@ mod stated;
 mod text;
 mod verdict;
 
+pub(crate) use compare::normal_error;
 pub use compare::{compare, compare_with};
 pub use files::write_comparison;
 pub use stated::Stated;

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use raypencil_files::{Fault, FileError, RayArray, quoted, ray_rows};
+use raypencil_files::{Fault, FileError, Limits, RayArray, quoted, ray_rows, read_npy_numbers};
 use raypencil_referee::ExactCast;
 use raypencil_scene::{CastRay, Precision, Progress, Sides, Triangles};
 
 use super::candidate::{CandidateConventions, read_candidate};
-use super::clouds::{CloudCase, CloudFacts, is_cloud, of_cloud, read_cloud_of};
+use super::clouds::{BeamQuestion, CloudCase, CloudFacts, is_cloud, of_cloud, read_cloud_of};
 use super::lengths::lengths;
 use super::mistakes::{Trial, explain};
 use super::read::RayPack;
@@ -132,18 +132,57 @@ pub fn check_ray_pack(
 ) -> Result<RayPackChecked, FileError> {
     progress.stage(&format!("{}: reading", pack.display()));
     let RayPack { mesh, rays, sides, scan, sha256: pack_sha256 } = RayPack::read(pack)?;
-    let case = match is_cloud(candidate) {
-        true => Some(read_cloud_of(candidate, (&rays.shape, &rays.rays), scan.as_ref(), conventions)?),
+    let exact = ExactCast::new(&mesh);
+    let ground = CastGround { mesh: &mesh, exact: &exact, sides };
+    let returns = scan.as_ref().and_then(|scan| Some((scan, scan.returns.as_ref()?)));
+    // A cloud of beams with a width is held to their returns.
+    let question = match returns.filter(|_| is_cloud(candidate)) {
+        None => None,
+        Some(returns) => {
+            let answers = cast_with(&exact, &rays.rays, sides, Questions::default(), progress);
+            refuse_other_answers(pack, &rays, &Stated::of(&answers))?;
+            let question = BeamQuestion::of(&rays, returns, answers.first);
+            refuse_other_returns(pack, &question)?;
+            Some(question)
+        }
+    };
+    let (asked, beams) = match &question {
+        Some(question) => ((&question.rays, Some(&question.scan)), Some(&question.beams)),
+        None => ((&rays, scan.as_ref()), None),
+    };
+    let (asked, of_scan) = asked;
+    let mut case = match is_cloud(candidate) {
+        true => {
+            let of_rays = (asked.shape.as_slice(), asked.rays.as_slice());
+            Some(read_cloud_of(candidate, of_rays, (of_scan, beams), conventions)?)
+        }
         false => None,
     };
-    let stated = match &case {
+    let mut stated = match &case {
         Some(case) => case.stated(),
         None => read_candidate(candidate, &rays.shape, conventions)?,
     };
-    let exact = ExactCast::new(&mesh);
-    let ground = CastGround { mesh: &mesh, exact: &exact, sides };
-    let judged = judge(ground, &rays.rays, (&stated, case), precision, progress);
-    refuse_other_answers(pack, &rays, &Stated::of(&judged.answers))?;
+    let mut excused = None;
+    if let (Some(case), Some(beams)) = (&case, beams) {
+        let comparison = compare_with(&exact, &mesh, case.rays, sides, &stated, precision);
+        excused = Some(beams.excused(case, (&stated, &comparison), (&exact, &mesh, sides), precision));
+    }
+    if let (Some(case), Some(excused)) = (&mut case, &excused) {
+        case.rays = excused;
+        stated = case.stated();
+    }
+    let asked = match &excused {
+        Some(excused) => RayArray { shape: asked.shape.clone(), rays: excused.clone() },
+        None => asked.clone(),
+    };
+    let judged = judge(ground, &asked.rays, (&stated, case), precision, progress);
+    let (rays, scan) = match question {
+        Some(question) => (asked, Some(question.scan)),
+        None => {
+            refuse_other_answers(pack, &rays, &Stated::of(&judged.answers))?;
+            (rays, scan)
+        }
+    };
     let name = candidate.file_name().map_or_else(|| ".".into(), |name| name.to_string_lossy().into_owned());
     let pack = pack.display().to_string();
     let asked_by = AskedBy {
@@ -216,6 +255,19 @@ fn judge(
         None => of_keys.map(|words| format!("100.0000 % agree if {words}")),
     };
     Judged { comparison, why, answers, cloud }
+}
+
+/// Refuses a pack whose own returns are not the exact ones.
+fn refuse_other_returns(pack: &Path, question: &BeamQuestion) -> Result<(), FileError> {
+    let exact = question.beams.numbers();
+    let path = pack.join("return.number.npy");
+    let kept = read_npy_numbers(&path, &Limits::default())?.values;
+    let is_same = |(kept, exact): (&f64, &u32)| *kept == f64::from(*exact);
+    if kept.len() == exact.len() && kept.iter().zip(exact).all(is_same) {
+        return Ok(());
+    }
+    let expected = "the returns that `raypencil pack --rays` writes: make the pack again";
+    Err(FileError::Array(Fault::new("returns", "others than the exact ones", expected).in_file(&path)))
 }
 
 /// Refuses a pack whose own first hits are not the exact ones: anyone can change an answer and write its digest anew.

@@ -37,7 +37,9 @@ pub(super) struct Trial {
     pub(super) rays: Vec<CastRay>,
     sides: Sides,
     pub(super) stated: Stated,
-    precision: Precision,
+    pub(super) precision: Precision,
+    /// Half of it is what a mistake adds to the bounds of points that follow it, in the mesh's unit; 0 without such a mistake.
+    pub(super) allowance: f64,
     /// The index in the pack of each ray.
     pub(super) indices: Vec<usize>,
     /// The points of a cloud, from which t and point of `stated` follow.
@@ -57,7 +59,7 @@ pub(super) struct CloudPart {
 
 impl CloudPart {
     /// The points of the rays with these indices.
-    fn some_of(&self, indices: &[usize]) -> Self {
+    pub(super) fn some_of(&self, indices: &[usize]) -> Self {
         Self {
             raw: indices.iter().map(|&index| self.raw[index]).collect(),
             error: indices.iter().map(|&index| self.error[index]).collect(),
@@ -108,6 +110,8 @@ pub(super) struct OfCloud<'a> {
     /// Mistakes with a number, which is estimated from a trial.
     #[allow(clippy::type_complexity, reason = "one function, which borrows the same cloud")]
     pub(super) estimated: Box<dyn Fn(&Trial) -> Vec<Extra<'a>> + 'a>,
+    /// Whether the ends of its rays are those of a sensor: if not, what ignores them is no mistake.
+    pub(super) has_ends: bool,
 }
 
 /// A mistake in words, and what undoes it.
@@ -370,6 +374,7 @@ impl Trial {
         let (a, b) = (&self.stated, &other.stated);
         self.sides == other.sides
             && self.precision == other.precision
+            && self.allowance == other.allowance
             && self.rays == other.rays
             && a.face == b.face
             && a.side == b.side
@@ -428,6 +433,7 @@ pub(super) fn explain(
         sides,
         stated: stated.some_of(&indices),
         precision,
+        allowance: 0.0,
         cloud: of_cloud.map(|of_cloud| of_cloud.part.some_of(&indices)),
         indices,
     };
@@ -441,6 +447,7 @@ pub(super) fn explain(
     // The points of a cloud are no arrays: their conventions are its own.
     let lists = match of_cloud {
         None => [OF_ARRAYS, OF_RULES, OF_MISSES, about_sensors],
+        Some(of_cloud) if !of_cloud.has_ends => [&[], &[], &[], about_sensors],
         Some(_) => [&[], OF_RULES, &[], about_sensors],
     };
     let extras = of_cloud.iter().flat_map(|of_cloud| &of_cloud.extras).map(Named::extra);

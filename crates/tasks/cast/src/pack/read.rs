@@ -4,11 +4,13 @@ use std::path::{Component, Path};
 
 use raypencil_files::{Fault, FileError, RayArray, bytes, file_sha256_hex, hex_digits, read_rays, sha256};
 use raypencil_mesh_io::load_triangles;
+use raypencil_scene::pattern::Returns;
 use raypencil_scene::{Sides, Triangles};
 use serde::Deserialize;
 
 use super::scan::Scan;
 use super::{PACK_FORMAT, PACK_NAME};
+use crate::returns::keep_of_json;
 
 /// The question of a pack. Its answers are computed again when a candidate is checked.
 pub(super) struct RayPack {
@@ -34,6 +36,14 @@ struct Document {
 #[derive(Deserialize)]
 struct ScanDocument {
     mounting: String,
+    returns: Option<ReturnsDocument>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct ReturnsDocument {
+    keep: serde_json::Value,
+    separation_m: f64,
 }
 
 #[derive(Deserialize)]
@@ -85,6 +95,22 @@ impl RayPack {
             questions.push("pose.npy");
             questions.extend(["time.npy", "elevation.npy"].into_iter().filter(|name| listed(name)));
         }
+        let returns = document.scan.as_ref().and_then(|scan| scan.returns.as_ref());
+        let wanted = returns.map(|ReturnsDocument { keep, separation_m }| {
+            let keep = keep_of_json(keep).ok_or_else(|| {
+                fault(
+                    &path,
+                    "scan.returns.keep",
+                    keep.to_string(),
+                    "\"first\", \"strongest\", \"last\", or 1 to 16",
+                )
+            })?;
+            Ok::<_, FileError>(Returns { keep, separation_m: *separation_m })
+        });
+        let wanted = wanted.transpose()?;
+        if wanted.is_some() {
+            questions.extend(["weight.npy", "return.number.npy", "return.ray.npy"]);
+        }
         for question in questions {
             if !listed(question) {
                 return Err(fault(&path, "files", format!("no {question}"), "its path and SHA-256"));
@@ -103,7 +129,10 @@ impl RayPack {
             }
         }
         let rays = read_rays(&folder.join("rays.npy"))?;
-        let scan = document.scan.as_ref().map(|scan| Scan::read(folder, &rays.shape, &scan.mounting, listed));
+        let scan = document
+            .scan
+            .as_ref()
+            .map(|scan| Scan::read(folder, &rays.shape, (&scan.mounting, wanted), listed));
         Ok(Self { mesh: load_triangles(folder)?, rays, sides, scan: scan.transpose()?, sha256 })
     }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::{DQuat, DVec3};
 use raypencil_files::{Fault, FileError, Limits, read_npy_numbers, write_npy_numbers};
-use raypencil_scene::pattern::{Mounting, TimedPose, TimedPoses};
+use raypencil_scene::pattern::{Mounting, Returns, TimedPose, TimedPoses};
 use raypencil_scene::{CastRay, NamedRaySet, Pose};
 
 use crate::layout::PageScan;
@@ -21,6 +21,17 @@ pub(super) struct Scan {
     pub(super) elevations_deg: Option<Vec<f64>>,
     /// Where the sensor stands in the mesh's frame.
     pub(super) mounting: Mounting,
+    /// Which returns of a beam are told, if rays are parts of beams; `None`: rays stand for themselves.
+    pub(super) returns: Option<ScanReturns>,
+}
+
+/// The returns of beams with a width.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct ScanReturns {
+    /// Which of them are told.
+    pub(super) wanted: Returns,
+    /// Shares of a beam's power along the last dimension.
+    pub(super) weights: Vec<f64>,
 }
 
 impl Scan {
@@ -29,6 +40,10 @@ impl Scan {
             times: set.times.clone(),
             elevations_deg: set.elevations_deg.clone(),
             mounting: set.mounting.clone(),
+            returns: set
+                .returns
+                .zip(set.weights.clone())
+                .map(|(wanted, weights)| ScanReturns { wanted, weights }),
         }
     }
 
@@ -40,7 +55,7 @@ impl Scan {
         }
     }
 
-    /// Writes `time.npy` and `elevation.npy`, if there are any, and `pose.npy` (poses, 8). Returns their names.
+    /// Writes `time.npy`, `elevation.npy` and `weight.npy`, if there are any, and `pose.npy` (poses, 8). Returns their names.
     pub(super) fn write(&self, folder: &Path, shape: &[u64]) -> Result<Vec<String>, FileError> {
         let mut names = Vec::new();
         let mut write = |name: &str, shape: &[u64], values: &[f64]| {
@@ -52,6 +67,9 @@ impl Scan {
         }
         if let Some(elevations) = &self.elevations_deg {
             write("elevation.npy", &[elevations.len() as u64], elevations)?;
+        }
+        if let Some(returns) = &self.returns {
+            write("weight.npy", &[returns.weights.len() as u64], &returns.weights)?;
         }
         let row = |time_s: f64, pose: &Pose| {
             let ([x, y, z], [qx, qy, qz, qw]) = (pose.position.to_array(), pose.rotation.to_array());
@@ -70,7 +88,7 @@ impl Scan {
     pub(super) fn read(
         folder: &Path,
         shape: &[u64],
-        mounting: &str,
+        (mounting, wanted): (&str, Option<Returns>),
         listed: impl Fn(&str) -> bool,
     ) -> Result<Self, FileError> {
         let fault = |name: &str, place: &str, found: String, expected: String| {
@@ -95,6 +113,19 @@ impl Scan {
         let times = numbers("time.npy", shape)?;
         let channels = shape.get(1).copied().unwrap_or(0);
         let elevations_deg = numbers("elevation.npy", &[channels])?;
+        let returns = match wanted {
+            None => None,
+            Some(wanted) => {
+                let rays_of_beam = shape.last().copied().unwrap_or(1);
+                let weights = numbers("weight.npy", &[rays_of_beam])?;
+                let scene = |source| FileError::Scene {
+                    origin: folder.join("raypack.json").display().to_string(),
+                    source,
+                };
+                wanted.validate("returns").map_err(scene)?;
+                weights.map(|weights| ScanReturns { wanted, weights })
+            }
+        };
         let array = read_npy_numbers(folder.join("pose.npy"), &Limits::default())?;
         let count = match array.shape[..] {
             [count, POSE_NUMBERS] if count > 0 => count,
@@ -133,7 +164,7 @@ impl Scan {
                 ));
             }
         };
-        Ok(Self { times, elevations_deg, mounting })
+        Ok(Self { times, elevations_deg, mounting, returns })
     }
 
     /// What a page shows of it.

@@ -12,10 +12,11 @@ use raypencil_report::VERSION;
 use raypencil_scene::{CastRay, FaceId, NamedRaySet, Progress, Reading, Side, Sides, Triangles};
 use serde_json::json;
 
-use super::scan::Scan;
+use super::scan::{Scan, ScanReturns};
 use super::{PACK_FORMAT, PACK_NAME};
 use crate::answers::{Questions, cast};
-use crate::write::{CastSource, write_answers};
+use crate::returns::{BeamReturns, keep_json};
+use crate::write::{CastSource, write_answers, write_beam_returns};
 
 /// How many rays of a pack test what. A program that gets it wrong passes a pack whose number is 0.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -115,7 +116,8 @@ pub fn write_ray_pack(
 
 /// The same of a sensor's scan, to which point clouds can be held: beside the rays it has `time.npy` (the rays' shape, seconds), if
 /// they have times, `elevation.npy` (channels, degrees) of a spinning head, and `pose.npy` (poses, 8) with the time, position and
-/// quaternion, its scalar last, of the sensor in the mesh's frame. `sides` may differ from those of the set.
+/// quaternion, its scalar last, of the sensor in the mesh's frame. A set that asks for returns has `weight.npy` (rays of a beam) too, and the
+/// returns, `return.*.npy`. `sides` may differ from those of the set.
 ///
 /// # Errors
 /// The folder or a file cannot be written; the message names it.
@@ -140,6 +142,10 @@ fn write_pack_of(
     let questions = Questions { any: true, all: true, margins: true };
     let answers = cast(mesh, &rays.rays, sides, questions, progress);
     write_answers(folder, &answers, (mesh, rays, sides), source)?;
+    let returns = scan.and_then(|scan| scan.returns.as_ref());
+    let told = returns.map(|returns| BeamReturns::of_first(&answers.first, returns.wanted, &returns.weights));
+    let of_returns =
+        told.map_or_else(|| Ok(Vec::new()), |told| write_beam_returns(folder, &told, &rays.shape))?;
     let counts = RayPackCounts::of(mesh, &rays.rays, sides);
     progress.stage("writing the mesh and the rays");
     let vertices: Vec<f64> = mesh.vertices().iter().flatten().copied().collect();
@@ -154,6 +160,7 @@ fn write_pack_of(
         names.extend(scan.write(folder, &rays.shape)?);
     }
     names.extend(answer_names());
+    names.extend(of_returns);
     let files = names.iter().map(|name| {
         let path = folder.join(name);
         let (bytes, sha256) = file_sha256_hex(&path).map_err(|error| FileError::io(&path, "read", error))?;
@@ -173,6 +180,10 @@ fn write_pack_of(
     });
     if let Some(scan) = scan {
         document["scan"] = json!({ "mounting": scan.mounting_word() });
+    }
+    if let Some(ScanReturns { wanted, .. }) = returns {
+        document["scan"]["returns"] =
+            json!({ "keep": keep_json(wanted.keep), "separationM": wanted.separation_m });
     }
     write_atomically(&last, |file| file.write_all(format!("{document:#}\n").as_bytes()))?;
     Ok(counts)

@@ -12,7 +12,7 @@ use raypencil_scene::pattern::{Mounting, Spinning, TimedPose, TimedPoses};
 use raypencil_scene::{CastRay, NamedRaySet, Pose, Precision, RaySet, Sides, Silent, Triangles};
 
 /// A room without any symmetry, with a ridge in it and a gap in a wall: rays through the gap miss.
-fn room() -> Triangles {
+pub(super) fn room() -> Triangles {
     let (mut vertices, mut faces) = (Vec::new(), Vec::new());
     let mut quad = |corners: [[f64; 3]; 4]| {
         let first = vertices.len() as u32;
@@ -30,7 +30,7 @@ fn room() -> Triangles {
 }
 
 /// A head of 16 channels and 120 sequences of 0.8 ms, which turns clockwise from 25 degrees on.
-fn head() -> Spinning {
+pub(super) fn head() -> Spinning {
     let preset = Spinning::preset("vlp-16").expect("a preset");
     let mut head =
         Spinning { azimuth_start_deg: 25.0, azimuth_step_deg: -3.0, steps: 120, period_s: 8e-4, ..preset };
@@ -39,7 +39,7 @@ fn head() -> Spinning {
 }
 
 /// A drive along a bend: 3 m/s, and 40 degrees in a tenth of a second.
-fn bend() -> Mounting {
+pub(super) fn bend() -> Mounting {
     let at = |k: u32| {
         let time_s = f64::from(k) * 0.025;
         let turn = Pose::from_axis_angle(DVec3::Z, time_s * 7.0);
@@ -51,32 +51,32 @@ fn bend() -> Mounting {
     Mounting::Moving(TimedPoses::new((0..6).map(at).collect(), "poses").expect("poses"))
 }
 
-fn still() -> Mounting {
+pub(super) fn still() -> Mounting {
     let turn = Pose::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), 0.4);
     Mounting::Fixed(Pose { position: DVec3::new(1.0, 0.5, 1.5), ..turn })
 }
 
-fn set_of(head: &Spinning, mounting: &Mounting) -> NamedRaySet {
+pub(super) fn set_of(head: &Spinning, mounting: &Mounting) -> NamedRaySet {
     let rays = mounting.place(head.rays("rays").expect("rays"), "rays").expect("poses");
     NamedRaySet::new("head", rays, Sides::Both).expect("a set")
 }
 
-fn of_frame(frame: CloudFrame) -> CandidateConventions<'static> {
+pub(super) fn of_frame(frame: CloudFrame) -> CandidateConventions<'static> {
     let cloud = CloudConventions { frame, ..CloudConventions::default() };
     CandidateConventions { cloud, ..CandidateConventions::default() }
 }
 
 /// A point as a simulator writes it.
 #[derive(Debug, Clone, Copy)]
-struct Point {
-    place: DVec3,
-    ring: u16,
-    time: f64,
-    range: f64,
+pub(super) struct Point {
+    pub(super) place: DVec3,
+    pub(super) ring: u16,
+    pub(super) time: f64,
+    pub(super) range: f64,
 }
 
 /// The points of a right simulator, in a frame, one for each ray: NaN for a miss.
-fn points(set: &NamedRaySet, frame: CloudFrame) -> Vec<Point> {
+pub(super) fn points(set: &NamedRaySet, frame: CloudFrame) -> Vec<Point> {
     let answers = cast(&room(), set.set.rays(), Sides::Both, Questions::default(), &Silent);
     let elevations = set.elevations_deg.as_ref().expect("a head");
     let rank =
@@ -101,7 +101,7 @@ fn points(set: &NamedRaySet, frame: CloudFrame) -> Vec<Point> {
 
 /// What a cloud's file has beside x, y and z.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Fields {
+pub(super) enum Fields {
     /// Nothing.
     None,
     /// ring and time.
@@ -111,13 +111,13 @@ enum Fields {
 }
 
 /// A pack of a scan, and the file of a cloud.
-struct Trial {
-    folder: tempfile::TempDir,
-    set: NamedRaySet,
+pub(super) struct Trial {
+    pub(super) folder: tempfile::TempDir,
+    pub(super) set: NamedRaySet,
 }
 
 impl Trial {
-    fn new(head: &Spinning, mounting: &Mounting) -> Self {
+    pub(super) fn new(head: &Spinning, mounting: &Mounting) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let set = set_of(head, mounting);
         let source = CastSource { mesh: "room".into(), rays: "head".into(), ..CastSource::default() };
@@ -127,7 +127,7 @@ impl Trial {
     }
 
     /// Writes single precision, binary.
-    fn write(&self, points: &[Point], fields: Fields, [width, height]: [usize; 2]) -> PathBuf {
+    pub(super) fn write(&self, points: &[Point], fields: Fields, [width, height]: [usize; 2]) -> PathBuf {
         let path = self.folder.path().join("theirs.pcd");
         let (names, sizes, kinds) = match fields {
             Fields::None => ("", "", ""),
@@ -155,19 +155,32 @@ impl Trial {
         path
     }
 
-    fn check(&self, file: &Path, conventions: CandidateConventions<'_>) -> Result<RayPackChecked, String> {
-        check_ray_pack(&self.folder.path().join("pack"), file, Precision::F64, conventions, &Silent)
+    pub(super) fn check(
+        &self,
+        file: &Path,
+        conventions: CandidateConventions<'_>,
+    ) -> Result<RayPackChecked, String> {
+        self.check_of(file, Precision::F64, conventions)
+    }
+
+    pub(super) fn check_of(
+        &self,
+        file: &Path,
+        precision: Precision,
+        conventions: CandidateConventions<'_>,
+    ) -> Result<RayPackChecked, String> {
+        check_ray_pack(&self.folder.path().join("pack"), file, precision, conventions, &Silent)
             .map_err(|error| error.to_string())
     }
 
     /// Checks points, organised as the pack's rays, in a frame.
-    fn judge(&self, points: &[Point], fields: Fields, frame: CloudFrame) -> RayPackChecked {
+    pub(super) fn judge(&self, points: &[Point], fields: Fields, frame: CloudFrame) -> RayPackChecked {
         let file = self.write(points, fields, [16, points.len() / 16]);
         self.check(&file, of_frame(frame)).expect("a check")
     }
 
     /// The same points without those that are none, and without order.
-    fn judge_dense(&self, points: &[Point], fields: Fields, frame: CloudFrame) -> RayPackChecked {
+    pub(super) fn judge_dense(&self, points: &[Point], fields: Fields, frame: CloudFrame) -> RayPackChecked {
         let dense: Vec<Point> = points.iter().copied().filter(|point| point.place.is_finite()).collect();
         let file = self.write(&dense, fields, [dense.len(), 1]);
         self.check(&file, of_frame(frame)).expect("a check")
@@ -175,7 +188,7 @@ impl Trial {
 
     /// The points fail, and this is why.
     #[track_caller]
-    fn expect_why(&self, points: &[Point], fields: Fields, frame: CloudFrame, words: &str) {
+    pub(super) fn expect_why(&self, points: &[Point], fields: Fields, frame: CloudFrame, words: &str) {
         let checked = self.judge(points, fields, frame);
         assert!(!checked.passes());
         let why = checked.why.unwrap_or_else(|| "no reason".into());

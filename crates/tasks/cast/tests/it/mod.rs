@@ -4,6 +4,8 @@ mod bags;
 mod bounds;
 mod cloud;
 mod clouds_of_others;
+mod clouds_of_returns;
+mod clouds_of_sensors;
 mod columns;
 mod lidar;
 mod packs;

@@ -5,8 +5,9 @@ use std::collections::HashMap;
 use glam::DVec3;
 use raypencil_files::Fault;
 use raypencil_mesh_io::{Cloud, CloudColumn};
+use raypencil_scene::CastRay;
 
-use crate::cloud::ranks;
+use super::keys::NUMBERS_OF_RETURNS;
 use crate::pack::scan::Scan;
 
 /// Greatest share of the points, in a hundred, that may belong to no ray. Tuned: more say that the points were laid on the wrong rays.
@@ -19,9 +20,6 @@ const NEARER: f64 = 3.0;
 /// Cells along each axis of the grid in which rays are looked up by their direction, at most.
 const MAX_CELLS: i32 = 1024;
 
-/// Words for points that are laid on rays by ring and time.
-pub(super) const BY_RING: &str = "by ring and time";
-
 /// Words for points that are laid on rays by their direction.
 pub(super) const BY_DIRECTION: &str = "by direction";
 
@@ -32,19 +30,6 @@ pub(super) struct Order {
     pub(super) is_of_channels: bool,
     /// The rows run from the last to the first; the points of each row do.
     pub(super) backwards: [bool; 2],
-}
-
-/// What a number in the field `ring` stands for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Ring {
-    /// The rank of the channel by its elevation, from below.
-    FromBelow,
-    /// The same from above.
-    FromAbove,
-    /// The channel in the order of the manual.
-    Channel,
-    /// The channel in the opposite order.
-    ChannelReversed,
 }
 
 /// The points of a cloud on the rays of a pack.
@@ -60,9 +45,14 @@ pub(super) struct Assigned {
 
 /// What is asked of a pack of rays.
 pub(super) struct Asked<'a> {
+    /// Dimensions of the rays, or of beams that have several places each.
     pub(super) shape: &'a [u64],
-    pub(super) count: usize,
+    pub(super) rays: &'a [CastRay],
     pub(super) scan: Option<&'a Scan>,
+    /// Places of each beam: 1, or one for each return that may be told. They follow each other in `rays`.
+    pub(super) places: usize,
+    /// Number of the return of each place; 0 for a place without one. Empty where beams have one place.
+    pub(super) numbers: &'a [u32],
 }
 
 impl Asked<'_> {
@@ -74,92 +64,25 @@ impl Asked<'_> {
         }
     }
 
-    /// By channel and time, where the file has both and they tell rays apart. `late_s` is what its times are too late.
-    pub(super) fn by_keys(
-        &self,
-        cloud: &Cloud,
-        is_point: &[bool],
-        (ring, late_s): (Ring, f64),
-    ) -> Option<Assigned> {
-        let scan = self.scan?;
-        let times = scan.times.as_ref()?;
-        // Without channels the time alone tells the ray.
-        let channels = self.channels().unwrap_or(1);
-        let of_channel = cloud.column("channel").or_else(|| cloud.column("line"));
-        let (of_channel, by) = match (of_channel, cloud.column("ring")) {
-            _ if self.channels().is_none() => (None, "by time"),
-            (Some(column), None) => (Some(column), "by channel and time"),
-            (_, Some(column)) => (Some(column), BY_RING),
-            (None, None) => return None,
-        };
-        // With both fields, the ring is what consumers read.
-        let is_ring = by == BY_RING;
-        let channel_of: Vec<usize> = match (is_ring, &scan.elevations_deg) {
-            (true, Some(elevations)) => {
-                let ranks = ranks(elevations);
-                let key = |channel: usize| match ring {
-                    Ring::FromBelow => ranks[channel] as usize,
-                    Ring::FromAbove => channels - 1 - ranks[channel] as usize,
-                    Ring::Channel => channel,
-                    Ring::ChannelReversed => channels - 1 - channel,
-                };
-                let mut channel_of = vec![0; channels];
-                (0..channels).for_each(|channel| channel_of[key(channel)] = channel);
-                channel_of
-            }
-            _ => (0..channels).collect(),
-        };
-        let (of_time, seconds) = seconds(cloud, times)?;
-        // The times of each channel in ascending order, with their rays.
-        let mut fired: Vec<Vec<(f64, usize)>> = vec![Vec::new(); channels];
-        for (index, &time) in times.iter().enumerate() {
-            fired[index % channels].push((time, index));
-        }
-        for list in &mut fired {
-            list.sort_by(|a, b| a.0.total_cmp(&b.0));
-            if list.windows(2).any(|pair| pair[0].0 == pair[1].0) {
-                return None;
-            }
-        }
-        let ray = |point: usize| {
-            let key = of_channel.map_or(0.0, |column| column.values[point]);
-            let channel = *channel_of.get((key.fract() == 0.0 && key >= 0.0).then_some(key as usize)?)?;
-            let time = seconds(of_time.values[point]) - late_s;
-            let list = &fired[channel];
-            let after = list.partition_point(|(other, _)| *other < time);
-            let near = [after.checked_sub(1), Some(after)].into_iter().flatten().filter_map(|k| list.get(k));
-            let nearest = near.min_by(|a, b| (a.0 - time).abs().total_cmp(&(b.0 - time).abs()))?;
-            // A quarter of the way to the next firing of the channel; a channel that fires once has no next.
-            let gap = list.windows(2).map(|pair| pair[1].0 - pair[0].0).fold(f64::INFINITY, f64::min);
-            ((nearest.0 - time).abs() <= gap / 4.0).then_some(nearest.1)
-        };
-        Some(self.collected(is_point, ray, by))
-    }
-
-    /// How much too late the times of a cloud may be, seconds: those by which its first point has the time of the first ray, or its
-    /// last that of the last.
-    pub(super) fn lateness(&self, cloud: &Cloud, is_point: &[bool]) -> Vec<f64> {
-        let Some(times) = self.scan.and_then(|scan| scan.times.as_ref()) else { return Vec::new() };
-        let Some((column, seconds)) = seconds(cloud, times) else { return Vec::new() };
-        let stated =
-            || column.values.iter().zip(is_point).filter(|(_, is)| **is).map(|(time, _)| seconds(*time));
-        let least = |times: &mut dyn Iterator<Item = f64>| times.fold(f64::INFINITY, f64::min);
-        let most = |times: &mut dyn Iterator<Item = f64>| times.fold(f64::NEG_INFINITY, f64::max);
-        let asked = || times.iter().copied();
-        let found = [least(&mut stated()) - least(&mut asked()), most(&mut stated()) - most(&mut asked())];
-        found.into_iter().filter(|late| late.is_finite() && *late != 0.0).collect()
-    }
-
     /// By order: one point for each ray.
     pub(super) fn by_order(&self, cloud: &Cloud, is_point: &[bool], order: Order) -> Option<Assigned> {
-        if cloud.len() != self.count {
+        if cloud.len() != self.rays.len() {
             return None;
         }
         if order == Order::default() {
+            if self.places > 1 && number_of_return(cloud).is_some() {
+                let beam = |point: usize| Some(point / self.places);
+                return Some(self.of_beams(
+                    cloud,
+                    is_point,
+                    beam,
+                    "by the order of the points and the numbers of returns",
+                ));
+            }
             return Some(self.collected(is_point, Some, "by the order of the points"));
         }
-        let channels = self.channels()?;
-        let sequences = self.count.checked_div(channels)?;
+        let channels = self.channels().filter(|_| self.places == 1)?;
+        let sequences = self.rays.len().checked_div(channels)?;
         let (rows, columns) =
             if order.is_of_channels { (channels, sequences) } else { (sequences, channels) };
         let ray = |point: usize| {
@@ -177,7 +100,7 @@ impl Asked<'_> {
 
     /// Whether the rows of an organised cloud are channels, and not firing sequences; `None` if their numbers are the same.
     pub(super) fn has_rows_of_channels(&self, cloud: &Cloud) -> Option<bool> {
-        let Some(channels) = self.channels() else { return Some(false) };
+        let Some(channels) = self.channels().filter(|_| self.places == 1) else { return Some(false) };
         let has_channels = cloud.height > 1 && cloud.height as usize == channels;
         if has_channels && cloud.width as usize == channels { None } else { Some(has_channels) }
     }
@@ -225,7 +148,7 @@ impl Asked<'_> {
         ray: impl Fn(usize) -> Option<usize>,
         by: &'static str,
     ) -> Assigned {
-        let mut assigned = Assigned { point_of: vec![None; self.count], strays: Vec::new(), by };
+        let mut assigned = Assigned { point_of: vec![None; self.rays.len()], strays: Vec::new(), by };
         // What is no point takes the places that are left.
         for pass in [true, false] {
             for point in (0..is_point.len()).filter(|&point| is_point[point] == pass) {
@@ -238,6 +161,59 @@ impl Asked<'_> {
         }
         assigned
     }
+
+    /// Points on the places of their beams: by the numbers of their returns, where the file has them, else one after the other.
+    pub(super) fn of_beams(
+        &self,
+        cloud: &Cloud,
+        is_point: &[bool],
+        beam: impl Fn(usize) -> Option<usize>,
+        by: &'static str,
+    ) -> Assigned {
+        if self.places == 1 {
+            return self.collected(is_point, beam, by);
+        }
+        let numbers = number_of_return(cloud);
+        let mut assigned = Assigned { point_of: vec![None; self.rays.len()], strays: Vec::new(), by };
+        let mut others = Vec::new();
+        for point in (0..is_point.len()).filter(|&point| is_point[point]) {
+            let Some(beam) = beam(point) else {
+                assigned.strays.push(point);
+                continue;
+            };
+            // Places without a return have no number.
+            let has_number = |&place: &usize| {
+                self.numbers[place] != 0
+                    && numbers.is_some_and(|of| of.values[point] == f64::from(self.numbers[place]))
+            };
+            match self.places_of(beam).find(has_number).map(|place| &mut assigned.point_of[place]) {
+                Some(place @ None) => *place = Some(point),
+                _ => others.push((beam, point)),
+            }
+        }
+        // A number that no place has tells nothing; and what is no point takes the places that are left.
+        let none = (0..is_point.len()).filter(|&point| !is_point[point]);
+        others.extend(none.filter_map(|point| Some((beam(point)?, point))));
+        for (beam, point) in others {
+            let free = self.places_of(beam).find(|&place| assigned.point_of[place].is_none());
+            match free.map(|place| &mut assigned.point_of[place]) {
+                Some(place) => *place = Some(point),
+                None if is_point[point] => assigned.strays.push(point),
+                None => {}
+            }
+        }
+        assigned.strays.sort_unstable();
+        assigned
+    }
+
+    fn places_of(&self, beam: usize) -> std::ops::Range<usize> {
+        beam * self.places..(beam + 1) * self.places
+    }
+}
+
+/// The field that has the number of a point's return.
+pub(super) fn number_of_return(cloud: &Cloud) -> Option<&CloudColumn> {
+    NUMBERS_OF_RETURNS.into_iter().find_map(|name| cloud.column(name))
 }
 
 impl Assigned {
@@ -253,39 +229,11 @@ impl Assigned {
     }
 }
 
-/// The field that has the time, and what makes seconds of the pack of its numbers.
-fn seconds<'a>(cloud: &'a Cloud, times: &[f64]) -> Option<(&'a CloudColumn, impl Fn(f64) -> f64)> {
-    let first = times.iter().copied().fold(f64::INFINITY, f64::min);
-    // Velodyne: seconds after the first ray. Ouster and Livox: nanoseconds, `offset_time` after the first ray. Others: seconds.
-    let stamp = if is_of_livox(cloud) { 1e-9 } else { 1.0 };
-    let known =
-        [("time", 1.0, first), ("timestamp", stamp, 0.0), ("t", 1e-9, first), ("offset_time", 1e-9, first)];
-    known
-        .into_iter()
-        .find_map(|(name, unit, zero)| Some((cloud.column(name)?, move |number: f64| number * unit + zero)))
-}
-
-/// Whether a cloud has the fields of Livox's driver: its `timestamp` is in nanoseconds.
-fn is_of_livox(cloud: &Cloud) -> bool {
-    cloud.column("line").is_some() && cloud.column("tag").is_some()
-}
-
-/// What the field `ring` counts: with Ouster's field `t` channels from above, as its driver does, else from below.
-pub(super) fn usual_ring(cloud: &Cloud) -> Ring {
-    let is_of_ouster = cloud.column("t").is_some() && cloud.column("time").is_none();
-    if is_of_ouster { Ring::FromAbove } else { Ring::FromBelow }
-}
-
-/// The fields that tell the ray of a point, and whose they are.
-pub(super) fn is_key(name: &str) -> bool {
-    ["ring", "channel", "line", "tag", "time", "timestamp", "t", "offset_time"].contains(&name)
-}
-
-/// Why points cannot be laid on rays.
-pub(super) fn unclear(strays: usize, points: usize) -> Fault {
+/// Why points cannot be laid on rays. `of_fields` is what their fields have, in words.
+pub(super) fn unclear(strays: usize, points: usize, of_fields: &str) -> Fault {
     Fault::new(
         "points",
-        format!("{strays} of {points} points belong to no ray that is known, or share one"),
+        format!("{strays} of {points} points belong to no ray that is known, or share one{of_fields}"),
         "the fields `ring` (or `channel`) and `time`, or one point for each ray in their order, NaN where there is none",
     )
 }

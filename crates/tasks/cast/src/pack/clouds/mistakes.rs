@@ -6,9 +6,11 @@ use raypencil_scene::pattern::Mounting;
 use raypencil_scene::{CastRay, Pose, Sides};
 
 use super::fit::{least, median, rounded};
+use super::limits::{of_ranges, of_steps};
+use super::places::{of_exchanged_channels, of_order, of_returns};
 use super::read::{CloudCase, pose_of};
 use super::turn::{Turn, azimuth_deg, turned, wrapped_deg};
-use crate::cloud::{CloudFrame, ranks};
+use crate::cloud::CloudFrame;
 use crate::pack::mistakes::{CloudPart, Extra, OfCloud, Trial};
 use crate::pack::scan::{Scan, moved};
 
@@ -26,9 +28,6 @@ const LENGTHS: [(&str, f64); 4] = [
     ("lengths are in feet", 0.3048),
 ];
 
-/// The sequence and channel whose point stands in the place of these, if there is one.
-type OtherPlace<'a> = Box<dyn Fn(usize, usize) -> Option<(usize, usize)> + 'a>;
-
 /// A cosine between a ray, by its index, and what a length is measured along.
 type Cosine<'a> = Box<dyn Fn(usize, &CastRay) -> f64 + 'a>;
 
@@ -40,7 +39,10 @@ pub(in crate::pack) fn of_cloud<'a>(
 ) -> OfCloud<'a> {
     let mut list = List { extras: Vec::new() };
     for (words, part) in &case.otherwise {
-        list.add(*words, true, move |trial| laid(trial, part));
+        list.add(words.as_str(), true, move |trial| laid(trial, part));
+    }
+    if let Some(beams) = case.beams {
+        of_returns(&mut list, case, beams);
     }
     if let Some(scan) = case.scan {
         of_frames(&mut list, case, scan);
@@ -60,7 +62,7 @@ pub(in crate::pack) fn of_cloud<'a>(
     of_axes(&mut list);
     // These explain much: a head that turns otherwise gives points that other rays have.
     for (words, part) in &case.backwards {
-        list.add(*words, true, move |trial| laid(trial, part));
+        list.add(words.as_str(), true, move |trial| laid(trial, part));
     }
     let estimated = move |trial: &Trial| {
         let mut list = List { extras: Vec::new() };
@@ -71,16 +73,18 @@ pub(in crate::pack) fn of_cloud<'a>(
         }
         list.extras
     };
-    OfCloud { part: &case.part, extras: list.extras, estimated: Box::new(estimated) }
+    // A ray without a length meets what is there if its end is ignored: that explains no return that is none.
+    let has_ends = case.beams.is_none();
+    OfCloud { part: &case.part, extras: list.extras, estimated: Box::new(estimated), has_ends }
 }
 
 /// Mistakes, one after the other.
-struct List<'a> {
+pub(super) struct List<'a> {
     extras: Vec<Extra<'a>>,
 }
 
 impl<'a> List<'a> {
-    fn add(&mut self, words: impl Into<String>, is_common: bool, undo: impl Fn(&mut Trial) + 'a) {
+    pub(super) fn add(&mut self, words: impl Into<String>, is_common: bool, undo: impl Fn(&mut Trial) + 'a) {
         self.extras.push(Extra { words: words.into(), undo: Box::new(undo), is_common });
     }
 
@@ -124,9 +128,19 @@ fn scaled(trial: &mut Trial, factor: f64) {
 }
 
 /// Moves each point along its ray: `length` gives the right distance from the ray's origin, by the ray and the one that is stated.
-fn along(trial: &mut Trial, length: impl Fn(usize, &CastRay, f64) -> f64) {
+pub(super) fn along(trial: &mut Trial, length: impl Fn(usize, &CastRay, f64) -> f64) {
+    along_of(trial, |_| true, length);
+}
+
+/// The same of those whose place in the trial `is_of` names.
+pub(super) fn along_of(
+    trial: &mut Trial,
+    is_of: impl Fn(usize) -> bool,
+    length: impl Fn(usize, &CastRay, f64) -> f64,
+) {
     let Some(cloud) = &mut trial.cloud else { return };
-    for (k, (&index, ray)) in trial.indices.iter().zip(&trial.rays).enumerate() {
+    let all = trial.indices.iter().zip(&trial.rays).enumerate();
+    for (k, (&index, ray)) in all.filter(|(k, _)| is_of(*k)) {
         let (point, _) = cloud.point(k);
         let from = point - ray.origin;
         let stated = from.length();
@@ -198,57 +212,6 @@ fn of_frames<'a>(list: &mut List<'a>, case: &'a CloudCase<'a>, scan: &'a Scan) {
             }
         });
     });
-}
-
-/// Orders of the points, where their order lays them on rays.
-fn of_order<'a>(list: &mut List<'a>, case: &'a CloudCase<'a>, scan: &'a Scan) {
-    let &[sequences, channels] = case.shape else { return };
-    let (sequences, channels) = (sequences as usize, channels as usize);
-    // Where channel and sequence of each point are: in the place of others.
-    let mut add = |words: &'static str, from: OtherPlace<'a>| {
-        list.add(words, true, move |trial| {
-            let Some(cloud) = &mut trial.cloud else { return };
-            for (k, &index) in trial.indices.iter().enumerate() {
-                let place = from(index / channels, index % channels)
-                    .filter(|(sequence, _)| *sequence < sequences)
-                    .map(|(sequence, channel)| sequence * channels + channel);
-                match place {
-                    Some(place) => {
-                        (cloud.raw[k], cloud.error[k]) = (case.part.raw[place], case.part.error[place])
-                    }
-                    None => cloud.raw[k] = DVec3::NAN,
-                }
-            }
-        });
-    };
-    if scan.elevations_deg.is_some() {
-        add(
-            "points are one firing sequence late: each stands in the place of the sequence after its own",
-            Box::new(|sequence, channel| Some((sequence + 1, channel))),
-        );
-        add(
-            "points are one firing sequence early: each stands in the place of the sequence before its own",
-            Box::new(|sequence, channel| Some((sequence.checked_sub(1)?, channel))),
-        );
-    }
-    if let Some(elevations) =
-        scan.elevations_deg.as_ref().filter(|_| case.facts.assigned.starts_with("by the order"))
-    {
-        let rank: Vec<usize> = ranks(elevations).into_iter().map(|rank| rank as usize).collect();
-        let other = rank.clone();
-        add(
-            "the channels of each sequence are in the opposite order",
-            Box::new(move |sequence, channel| Some((sequence, channels - 1 - channel))),
-        );
-        add(
-            "the channels of each sequence are in the order of their elevation, the lowest first: it is that of the manual",
-            Box::new(move |sequence, channel| Some((sequence, rank[channel]))),
-        );
-        add(
-            "the channels of each sequence are in the order of their elevation, the highest first: it is that of the manual",
-            Box::new(move |sequence, channel| Some((sequence, channels - 1 - other[channel]))),
-        );
-    }
 }
 
 /// Rules of a spinning head.
@@ -455,12 +418,10 @@ fn estimate<'a>(
         let face = *read.hit()?.first()?;
         Some(exact.values(ray, face)?.range.double)
     };
-    let pairs: Vec<(f64, f64)> = some
-        .iter()
-        .filter_map(|&k| {
-            Some(((cloud.point(k).0 - trial.rays[k].origin).length(), range_of(&trial.rays[k])?))
-        })
-        .collect();
+    let exact_of: Vec<(usize, f64)> =
+        some.iter().filter_map(|&k| Some((k, range_of(&trial.rays[k])?))).collect();
+    let stated_of = |k: usize| (cloud.point(k).0 - trial.rays[k].origin).length();
+    let pairs: Vec<(f64, f64)> = exact_of.iter().map(|&(k, exact)| (stated_of(k), exact)).collect();
     for by in
         median(pairs.iter().map(|(stated, exact)| stated - exact).collect()).map_or_else(Vec::new, rounded)
     {
@@ -477,7 +438,10 @@ fn estimate<'a>(
         }
     }
     estimate_field(list, trial, &range_of);
+    of_ranges(list, trial, exact, sides);
+    of_steps(list, trial, &exact_of);
     let Some(scan) = case.scan else { return };
+    of_exchanged_channels(list, trial, case, scan);
     for by in start_angle(trial, &some, scan).map_or_else(Vec::new, rounded) {
         let side = if by > 0.0 { "left" } else { "right" };
         let words = format!("the pattern begins {} degrees to the {side} of where it is asked to", by.abs());

@@ -4,12 +4,14 @@ use std::path::Path;
 
 use glam::DVec3;
 use raypencil_files::FileError;
-use raypencil_mesh_io::CloudStorage;
+use raypencil_mesh_io::{Cloud, CloudStorage};
 use raypencil_scene::CastRay;
 
-use super::assign::{Asked, Assigned, BY_DIRECTION, BY_RING, Order, Ring, is_key, unclear, usual_ring};
+use super::assign::{Asked, Assigned, BY_DIRECTION, Order, number_of_return, unclear};
+use super::beams::Beams;
 use super::file;
 use super::fit::rounded;
+use super::keys::{BY_RING, Clock, Keys, is_key, usual_ring};
 use super::rules::{Places, assigned, backwards, by_direction, rings, swapped};
 use crate::cloud::CloudFrame;
 use crate::comparison::Stated;
@@ -43,13 +45,17 @@ pub(in crate::pack) struct CloudCase<'a> {
     pub(in crate::pack) shape: &'a [u64],
     pub(in crate::pack) rays: &'a [CastRay],
     pub(in crate::pack) scan: Option<&'a Scan>,
+    /// What is known of the returns of beams; `None`: rays stand for themselves.
+    pub(in crate::pack) beams: Option<&'a Beams>,
+    /// Whether the file has numbers of returns.
+    pub(in crate::pack) has_numbers: bool,
     pub(in crate::pack) frame: CloudFrame,
     pub(in crate::pack) part: CloudPart,
     pub(in crate::pack) facts: CloudFacts,
     /// The same points on the rays that another rule of order gives, and that rule in words.
-    pub(in crate::pack) otherwise: Vec<(&'static str, CloudPart)>,
+    pub(in crate::pack) otherwise: Vec<(String, CloudPart)>,
     /// The same for orders that run from the last to the first.
-    pub(in crate::pack) backwards: Vec<(&'static str, CloudPart)>,
+    pub(in crate::pack) backwards: Vec<(String, CloudPart)>,
     /// The same for points that were laid by their order, each on the ray that its direction tells.
     pub(in crate::pack) directed: Option<CloudPart>,
     /// The field `range` and how far storing may have moved it, for each ray.
@@ -70,7 +76,7 @@ impl CloudCase<'_> {
 pub(in crate::pack) fn read_cloud_of<'a>(
     path: &Path,
     (shape, rays): (&'a [u64], &'a [CastRay]),
-    scan: Option<&'a Scan>,
+    (scan, beams): (Option<&'a Scan>, Option<&'a Beams>),
     conventions: CandidateConventions<'_>,
 ) -> Result<CloudCase<'a>, FileError> {
     let choice = &conventions.cloud.choice;
@@ -91,7 +97,10 @@ pub(in crate::pack) fn read_cloud_of<'a>(
     let is_miss = |point: DVec3| conventions.miss.is_some_and(|miss| point == DVec3::splat(miss));
     let is_point: Vec<bool> = points.iter().map(|&point| point.is_finite() && !is_miss(point)).collect();
     let real = is_point.iter().filter(|&&is_point| is_point).count();
-    let asked = Asked { shape, count: rays.len(), scan };
+    let places = beams.map_or(1, Beams::places);
+    let shape_of_beams = if places > 1 { &shape[..shape.len() - 1] } else { shape };
+    let numbers = beams.map_or(&[][..], Beams::numbers);
+    let asked = Asked { shape: shape_of_beams, rays, scan, places, numbers };
     let usual = usual_ring(&cloud);
     let by_direction = || by_direction(&asked, rays, (&points, &is_point), frame);
     let angle = |point: usize, ray: usize| {
@@ -102,19 +111,17 @@ pub(in crate::pack) fn read_cloud_of<'a>(
     let found =
         assigned(&asked, &cloud, &is_point, usual, Places { by_direction: &by_direction, angle: &angle });
     let strays = found.as_ref().map_or(real, |(found, _)| found.strays.len());
-    let lateness = asked.lateness(&cloud, &is_point);
-    // Times with another zero still tell the rays.
-    let shifted = |late: f64| {
-        let found = asked.by_keys(&cloud, &is_point, (usual, late));
-        found.filter(|found| found.is_clear(real)).map(|found| (found, late))
-    };
     let order = found.as_ref().and_then(|(_, order)| *order);
-    let (found, late) = match found.map(|(found, _)| found).filter(|found| found.is_clear(real)) {
-        Some(found) => (found, 0.0),
-        None => {
-            let found = lateness.iter().find_map(|&late| shifted(late));
-            found.ok_or_else(|| fault(unclear(strays, real)))?
-        }
+    let said = Said { asked: &asked, cloud: &cloud, is_point: &is_point, usual: Keys::of(usual) };
+    let exchanged = || asked.exchanged(&cloud, (&points, &is_point), (frame, Keys::of(usual)));
+    let (found, keys) = match found.map(|(found, _)| found).filter(|found| found.is_clear(real)) {
+        Some(found) => (found, Keys::of(usual)),
+        // Wrong times or numbers still tell the rays.
+        None => said.otherwise(&exchanged, real).ok_or_else(|| {
+            let only = asked.only_time(&cloud, &is_point);
+            let of_fields = only.map_or(String::new(), |time| format!("; all have the same time, {time}"));
+            fault(unclear(strays, real, &of_fields))
+        })?,
     };
     let part_of = |assigned: &Assigned| {
         let error = |k: usize| DVec3::new(x.error(k), y.error(k), z.error(k)).length();
@@ -132,11 +139,17 @@ pub(in crate::pack) fn read_cloud_of<'a>(
     let part = part_of(&found);
     let of =
         |other: Option<Assigned>| other.filter(|other| other.is_clear(real)).map(|other| part_of(&other));
-    let with = |(words, other): (&'static str, Option<Assigned>)| Some((words, of(other)?));
+    let with = |(words, other): (&'static str, Option<Assigned>)| Some((words.to_string(), of(other)?));
     let mut otherwise = Vec::new();
     if found.by == BY_RING {
-        let keys = |(words, ring)| (words, asked.by_keys(&cloud, &is_point, (ring, late)));
-        otherwise.extend(rings(usual).into_iter().map(keys).filter_map(with));
+        let of_ring = |(words, ring)| (words, asked.by_keys(&cloud, &is_point, Keys { ring, ..keys }));
+        otherwise.extend(rings(usual).into_iter().map(of_ring).filter_map(with));
+    }
+    if keys.exchanged.is_none()
+        && let Some(pair) = exchanged()
+    {
+        let other = asked.by_keys(&cloud, &is_point, Keys { exchanged: Some(pair), ..keys });
+        otherwise.extend(of(other).map(|part| (exchanged_words(pair), part)));
     }
     let by_order = |(words, order)| (words, asked.by_order(&cloud, &is_point, order));
     let (mut of_backwards, mut directed) = (Vec::new(), None);
@@ -164,26 +177,9 @@ pub(in crate::pack) fn read_cloud_of<'a>(
         found.point_of.iter().map(of).unzip()
     });
     // Keys that do not tell the rays are wrong themselves.
-    let unlike = |keys: &Assigned| -> Vec<usize> {
-        let pairs = found.point_of.iter().zip(&keys.point_of).enumerate();
-        let is_unlike = |(found, of_keys): (&Option<usize>, &Option<usize>)| {
-            found.is_some_and(|k| is_point[k]) && found != of_keys
-        };
-        pairs.filter(|(_, pair)| is_unlike(*pair)).map(|(ray, _)| ray).collect()
-    };
-    let keys = asked.by_keys(&cloud, &is_point, (usual, 0.0));
-    let wrong_keys = keys.as_ref().map_or_else(Vec::new, unlike);
-    let explains = |ring: Ring, late: f64| {
-        asked.by_keys(&cloud, &is_point, (ring, late)).is_some_and(|keys| unlike(&keys).is_empty())
-    };
-    let of_ring =
-        || rings(usual).iter().find(|(_, ring)| explains(*ring, 0.0)).map(|(words, _)| (*words).to_string());
-    let of_time = || {
-        let late = lateness.iter().flat_map(|&late| rounded(late)).find(|&late| explains(usual, late))?;
-        let way = if late > 0.0 { "late" } else { "early" };
-        Some(format!("the times of the points are {} s too {way}", late.abs()))
-    };
-    let keys_why = if !wrong_keys.is_empty() { of_ring().or_else(of_time) } else { None };
+    let of_usual = asked.by_keys(&cloud, &is_point, Keys::of(usual));
+    let wrong_keys = of_usual.as_ref().map_or_else(Vec::new, |of_usual| said.unlike(&found, of_usual));
+    let keys_why = if wrong_keys.is_empty() { None } else { said.why(&found, &exchanged) };
     let facts = CloudFacts {
         wrong_keys,
         keys_why,
@@ -198,6 +194,8 @@ pub(in crate::pack) fn read_cloud_of<'a>(
         shape,
         rays,
         scan,
+        beams,
+        has_numbers: number_of_return(&cloud).is_some(),
         frame,
         part,
         facts,
@@ -206,6 +204,95 @@ pub(in crate::pack) fn read_cloud_of<'a>(
         directed,
         ranges,
     })
+}
+
+/// What the fields of a cloud say of its points.
+struct Said<'a> {
+    asked: &'a Asked<'a>,
+    cloud: &'a Cloud,
+    is_point: &'a [bool],
+    usual: Keys,
+}
+
+/// A pair of channels whose numbers are exchanged, if the elevations of the points say so.
+type Exchanged<'a> = &'a dyn Fn() -> Option<[usize; 2]>;
+
+impl Said<'_> {
+    fn by(&self, keys: Keys) -> Option<Assigned> {
+        self.asked.by_keys(self.cloud, self.is_point, keys)
+    }
+
+    /// Keys with a clock that is late, by the first and by the last point.
+    fn late(&self, keys: Keys) -> impl Iterator<Item = Keys> {
+        let lateness = self.asked.lateness(self.cloud, self.is_point, keys.clock);
+        lateness.into_iter().map(move |late_s| Keys { clock: Clock { late_s, ..keys.clock }, ..keys })
+    }
+
+    /// The points by fields that are wrong in a way that still tells their rays.
+    fn otherwise(&self, exchanged: Exchanged<'_>, points: usize) -> Option<(Assigned, Keys)> {
+        let of_clocks = self.asked.other_clocks(self.cloud).into_iter().flat_map(|(_, clock)| {
+            let keys = Keys { clock, ..self.usual };
+            std::iter::once(keys).chain(self.late(keys))
+        });
+        let of_exchange = || exchanged().map(|pair| Keys { exchanged: Some(pair), ..self.usual });
+        let all = self.late(self.usual).chain(of_clocks).chain(std::iter::once_with(of_exchange).flatten());
+        all.filter_map(|keys| Some((self.by(keys)?, keys))).find(|(found, _)| found.is_clear(points))
+    }
+
+    /// The rays whose points have the keys of others.
+    fn unlike(&self, found: &Assigned, keys: &Assigned) -> Vec<usize> {
+        let pairs = found.point_of.iter().zip(&keys.point_of).enumerate();
+        let is_unlike = |(found, of_keys): (&Option<usize>, &Option<usize>)| {
+            found.is_some_and(|point| self.is_point[point]) && found != of_keys
+        };
+        pairs.filter(|(_, pair)| is_unlike(*pair)).map(|(ray, _)| ray).collect()
+    }
+
+    /// What explains keys that are not those of the rays, in words.
+    fn why(&self, found: &Assigned, exchanged: Exchanged<'_>) -> Option<String> {
+        let explains = |keys: Keys| self.by(keys).is_some_and(|keys| self.unlike(found, &keys).is_empty());
+        let of_ring = || {
+            let all = rings(self.usual.ring);
+            let ring = all.iter().find(|(_, ring)| explains(Keys { ring: *ring, ..self.usual }));
+            ring.map(|(words, _)| (*words).to_string())
+        };
+        let of_exchange = || {
+            let pair = exchanged().filter(|pair| explains(Keys { exchanged: Some(*pair), ..self.usual }))?;
+            Some(exchanged_words(pair))
+        };
+        // The fewest decimals that explain the times of all.
+        let of_lateness = |keys: Keys| {
+            let near =
+                self.late(keys).filter(|keys| explains(*keys)).flat_map(|keys| rounded(keys.clock.late_s));
+            let of = |late_s: &f64| explains(Keys { clock: Clock { late_s: *late_s, ..keys.clock }, ..keys });
+            let late = near.collect::<Vec<_>>().into_iter().find(of)?;
+            let way = if late > 0.0 { "late" } else { "early" };
+            Some(format!("the times of the points are {} s too {way}", late.abs()))
+        };
+        let of_clock = || {
+            self.asked.other_clocks(self.cloud).into_iter().find_map(|(words, clock)| {
+                let keys = Keys { clock, ..self.usual };
+                if explains(keys) {
+                    Some(words)
+                } else {
+                    Some(format!("{words}, and {}", of_lateness(keys)?))
+                }
+            })
+        };
+        let of_one_time = || {
+            let time = self.asked.only_time(self.cloud, self.is_point)?;
+            Some(format!("all points have the same time, {time}: each has that of its own firing"))
+        };
+        of_ring()
+            .or_else(|| of_lateness(self.usual))
+            .or_else(of_one_time)
+            .or_else(of_clock)
+            .or_else(of_exchange)
+    }
+}
+
+fn exchanged_words([a, b]: [usize; 2]) -> String {
+    format!("channels {a} and {b}, counted from 0 in the order of the manual, have each other's number")
 }
 
 /// The pose of a cloud's frame for a ray; `None`: it is the mesh's.

@@ -4,7 +4,8 @@ use glam::DVec3;
 use raypencil_mesh_io::Cloud;
 use raypencil_scene::CastRay;
 
-use super::assign::{Asked, Assigned, Order, Ring};
+use super::assign::{Asked, Assigned, Order};
+use super::keys::{Keys, Ring};
 use crate::cloud::CloudFrame;
 use crate::pack::scan::Scan;
 
@@ -67,7 +68,7 @@ pub(super) fn assigned(
 ) -> Option<(Assigned, Option<Order>)> {
     let real = is_point.iter().filter(|&&is_point| is_point).count();
     let clear = |assigned: &Assigned| assigned.is_clear(real);
-    if let Some(found) = asked.by_keys(cloud, is_point, (usual, 0.0)).filter(clear) {
+    if let Some(found) = asked.by_keys(cloud, is_point, Keys::of(usual)).filter(clear) {
         return Some((found, None));
     }
     let of_rows = |is_of_channels: bool| {

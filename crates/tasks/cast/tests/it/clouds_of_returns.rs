@@ -1,0 +1,376 @@
+//! Clouds of several returns against a pack of beams with a width: right ones pass, exchanged, other and missing returns are told.
+
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use raypencil_cast::{
+    BeamReturns, CastSource, CloudFrame, Questions, RayPackChecked, cast, check_ray_pack, write_scan_pack,
+    write_set,
+};
+use raypencil_scene::pattern::{Cone, Keep, Mounting, PatternRays, Returns, Spinning};
+use raypencil_scene::{CastRay, NamedRaySet, Precision, Sides, Silent, Triangles};
+
+use super::clouds_of_others::{bend, head, of_frame, room, still};
+
+const SENSOR: CloudFrame = CloudFrame::Sensor;
+
+/// A point of a return as a simulator writes it.
+#[derive(Debug, Clone, Copy)]
+struct Point {
+    place: DVec3,
+    ring: u16,
+    time: f64,
+    number: u32,
+}
+
+/// What a cloud's file has beside x, y and z.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Fields {
+    None,
+    /// ring and time.
+    Keys,
+    /// These and the number of the return.
+    Numbers,
+}
+
+/// The head of 16 channels with beams of 30 mrad, 1 + 6 rays each: at 5 m a beam is 15 cm wide.
+fn set_of(mounting: &Mounting, keep: Keep) -> NamedRaySet {
+    let head = Spinning { steps: 60, azimuth_step_deg: -6.0, ..head() };
+    let cone = Cone { divergence_rad: 0.03, rings: 1 };
+    let beams = cone.spread(&head.rays("rays").expect("rays"), "cone").expect("a cone");
+    let beams = PatternRays { returns: Some(Returns { keep, separation_m: 0.5 }), ..beams };
+    NamedRaySet::new("head", mounting.place(beams, "rays").expect("poses"), Sides::Both).expect("a set")
+}
+
+/// A pack of beams.
+struct Trial {
+    folder: tempfile::TempDir,
+    set: NamedRaySet,
+    returns: BeamReturns,
+    mesh: Triangles,
+}
+
+impl Trial {
+    fn new(mesh: Triangles, set: NamedRaySet) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let pack = folder.path().join("pack");
+        write_scan_pack(&pack, (&mesh, &set, Sides::Both), &CastSource::default(), &Silent).expect("a pack");
+        let answers = cast(&mesh, set.set.rays(), Sides::Both, Questions::default(), &Silent);
+        let returns = BeamReturns::of(&answers, &set).expect("returns");
+        Self { folder, set, returns, mesh }
+    }
+
+    fn of_room(mounting: &Mounting, keep: Keep) -> Self {
+        Self::new(room(), set_of(mounting, keep))
+    }
+
+    /// The points of returns in the sensor's frame, so many places a beam. `place` gives the point by the leading ray and the range.
+    fn points(&self, returns: &BeamReturns, place: &dyn Fn(&CastRay, f64, f64) -> DVec3) -> Vec<Point> {
+        let elevations = self.set.elevations_deg.as_ref().expect("a head");
+        let times = self.set.times.as_ref().expect("times");
+        let of = |(index, told): (usize, &Option<raypencil_cast::BeamReturn>)| {
+            let beam = index / returns.most();
+            let channel = beam % elevations.len();
+            let ring = elevations.iter().filter(|other| **other < elevations[channel]).count() as u16;
+            let time = times[beam * returns.rays_of_beam()];
+            let pose = self.set.mounting.at(time).expect("a pose").inverse();
+            let place = told.as_ref().map_or(DVec3::NAN, |told| {
+                pose * place(&self.set.set.rays()[told.ray], told.range, told.mean_range)
+            });
+            Point { place, ring, time, number: told.as_ref().map_or(0, |told| told.number) }
+        };
+        returns.told().iter().enumerate().map(of).collect()
+    }
+
+    fn right(&self) -> Vec<Point> {
+        self.points(&self.returns, &|ray, range, _| ray.origin + ray.direction * range)
+    }
+
+    /// The points that another rule would tell.
+    fn by(&self, keep: Keep) -> Vec<Point> {
+        let set = set_of(&self.set.mounting, keep);
+        let answers = cast(&self.mesh, set.set.rays(), Sides::Both, Questions::default(), &Silent);
+        let returns = BeamReturns::of(&answers, &set).expect("returns");
+        self.points(&returns, &|ray, range, _| ray.origin + ray.direction * range)
+    }
+
+    fn write(&self, points: &[Point], fields: Fields) -> PathBuf {
+        let path = self.folder.path().join("theirs.pcd");
+        let (names, sizes, kinds) = match fields {
+            Fields::None => ("", "", ""),
+            Fields::Keys => (" ring time", " 2 4", " U F"),
+            Fields::Numbers => (" ring time return", " 2 4 1", " U F U"),
+        };
+        let count = points.len();
+        let mut bytes = format!(
+            "VERSION 0.7\nFIELDS x y z{names}\nSIZE 4 4 4{sizes}\nTYPE F F F{kinds}\nWIDTH {count}\nHEIGHT 1\nPOINTS {count}\nDATA binary\n"
+        )
+        .into_bytes();
+        for point in points {
+            point.place.to_array().iter().for_each(|part| bytes.extend((*part as f32).to_le_bytes()));
+            if fields != Fields::None {
+                bytes.extend(point.ring.to_le_bytes());
+                bytes.extend((point.time as f32).to_le_bytes());
+            }
+            if fields == Fields::Numbers {
+                bytes.push(point.number as u8);
+            }
+        }
+        std::fs::write(&path, bytes).expect("a file");
+        path
+    }
+
+    fn check(&self, file: &Path, precision: Precision) -> Result<RayPackChecked, String> {
+        let conventions = of_frame(SENSOR);
+        check_ray_pack(&self.folder.path().join("pack"), file, precision, conventions, &Silent)
+            .map_err(|error| error.to_string())
+    }
+
+    /// All places in their order, and without the empty ones by ring and time, and by the numbers too.
+    fn judge_all(&self, points: &[Point]) -> [RayPackChecked; 3] {
+        let dense: Vec<Point> = points.iter().copied().filter(|point| point.place.is_finite()).collect();
+        [(Fields::None, points), (Fields::Keys, &dense), (Fields::Numbers, &dense)]
+            .map(|(fields, points)| self.check(&self.write(points, fields), Precision::F64).expect("a check"))
+    }
+
+    #[track_caller]
+    fn expect_why(&self, points: &[Point], words: &str) {
+        for checked in self.judge_all(points) {
+            expect(&checked, words);
+        }
+    }
+}
+
+#[track_caller]
+fn expect(checked: &RayPackChecked, words: &str) {
+    assert!(!checked.passes());
+    let why = checked.why.as_deref().unwrap_or("no reason");
+    assert!(why.contains(words) && why.starts_with("100.0000 %"), "{why}");
+}
+
+const RULES: [Keep; 5] = [Keep::First, Keep::Strongest, Keep::Last, Keep::UpTo(2), Keep::UpTo(3)];
+
+#[test]
+fn right_returns_pass_by_order_by_keys_and_by_numbers() {
+    for keep in RULES {
+        for mounting in [still(), bend()].into_iter().skip(usize::from(keep != Keep::UpTo(2))) {
+            let trial = Trial::of_room(&mounting, keep);
+            let mixed = trial.returns.footprints().iter().filter(|beam| beam.is_mixed()).count();
+            assert!(mixed >= 20, "{mixed} beams are mixed");
+            for checked in trial.judge_all(&trial.right()) {
+                assert!(checked.passes(), "{keep:?}: {:?}", checked.why);
+                let told = trial.returns.told().iter().flatten().count();
+                assert_eq!(checked.comparison.met, told as u64);
+            }
+        }
+    }
+    // The clouds that `cast` writes.
+    let trial = Trial::of_room(&bend(), Keep::UpTo(2));
+    let answers = cast(&trial.mesh, trial.set.set.rays(), Sides::Both, Questions::default(), &Silent);
+    let folder = trial.folder.path().join("own");
+    write_set(&folder, &answers, (&trial.mesh, &trial.set, Sides::Both), &CastSource::default())
+        .expect("files");
+    let checked = trial.check(&folder.join("cloud-sensor.pcd"), Precision::F64).expect("a check");
+    assert!(checked.passes(), "{:?}", checked.why);
+    let cloud = checked.cloud.expect("a cloud");
+    assert!(cloud.has_range);
+    assert_eq!(cloud.assigned, "by ring and time");
+}
+
+#[test]
+fn returns_of_another_rule_are_told() {
+    let trial = |keep| Trial::of_room(&bend(), keep);
+    let of_first = trial(Keep::First);
+    of_first
+        .expect_why(&of_first.by(Keep::Last), "if points are the last returns: the first ones are asked for");
+    let of_last = trial(Keep::Last);
+    of_last
+        .expect_why(&of_last.by(Keep::First), "if points are the first returns: the last ones are asked for");
+    let of_strongest = trial(Keep::Strongest);
+    let words = "if points are the last returns: the strongest ones are asked for";
+    of_strongest.expect_why(&of_strongest.by(Keep::Last), words);
+    let of_two = trial(Keep::UpTo(2));
+    for (name, keep) in [("first", Keep::First), ("last", Keep::Last), ("strongest", Keep::Strongest)] {
+        let places = |one: Point| [one, Point { place: DVec3::NAN, number: 0, ..one }];
+        let alone: Vec<Point> = of_two.by(keep).into_iter().flat_map(places).collect();
+        let words = format!("if each beam has its {name} return alone: the 2 strongest ones are asked for");
+        of_two.expect_why(&alone, &words);
+    }
+}
+
+#[test]
+fn returns_in_another_order_and_repeated_ones_are_told() {
+    let trial = Trial::of_room(&still(), Keep::UpTo(2));
+    let right = trial.right();
+    let is_double = |k: usize| right[k / 2 * 2 + 1].place.is_finite();
+    let exchanged: Vec<Point> =
+        (0..right.len()).map(|k| if is_double(k) { right[k ^ 1] } else { right[k] }).collect();
+    let [by_order, by_keys, by_numbers] = trial.judge_all(&exchanged);
+    expect(&by_order, "if the returns of a beam run from the farthest to the nearest");
+    expect(&by_keys, "if the returns of a beam run from the farthest to the nearest");
+    // With its own number a point is right wherever it stands.
+    assert!(by_numbers.passes(), "{:?}", by_numbers.why);
+    let numbers: Vec<Point> = (0..right.len())
+        .map(|k| Point {
+            number: if is_double(k) { right[k ^ 1].number } else { right[k].number },
+            ..right[k]
+        })
+        .collect();
+    let [by_order, by_keys, by_numbers] = trial.judge_all(&numbers);
+    assert!(by_order.passes() && by_keys.passes());
+    // Of three returns two are told, and their numbers may be 1 and 3: they are exchanged all the same.
+    expect(&by_numbers, "if the numbers of returns count from the farthest: the nearest is 1");
+    let again: Vec<Point> = (0..right.len())
+        .map(|k| if right[k].place.is_finite() || k % 2 == 0 { right[k] } else { right[k - 1] })
+        .collect();
+    let words = "if a beam with fewer returns has one of them again: its other places are empty";
+    trial.expect_why(&again, words);
+}
+
+#[test]
+fn the_middle_of_the_beam_and_mean_ranges_are_told() {
+    let trial = Trial::of_room(&bend(), Keep::UpTo(2));
+    let rays = trial.set.set.rays();
+    let middle = |ray: &CastRay| {
+        let index = rays.iter().position(|other| other == ray).expect("a ray");
+        rays[index / 7 * 7].direction
+    };
+    let of_middle = trial.points(&trial.returns, &|ray, range, _| ray.origin + middle(ray) * range);
+    let words = "if points stand on the middle of their beam, at the range of the return";
+    trial.expect_why(&of_middle, words);
+    let of_mean = trial.points(&trial.returns, &|ray, _, mean| ray.origin + ray.direction * mean);
+    trial.expect_why(&of_mean, "if points stand at the mean range of their return");
+    // As a device has them.
+    let both = trial.points(&trial.returns, &|ray, _, mean| ray.origin + middle(ray) * mean);
+    for checked in trial.judge_all(&both) {
+        expect(&checked, words);
+        expect(&checked, ", and points stand at the mean range of their return");
+    }
+}
+
+#[test]
+fn a_return_too_many_or_too_few_is_wrong() {
+    let trial = Trial::of_room(&still(), Keep::UpTo(2));
+    let right = trial.right();
+    let double = right.iter().position(|one| one.number == 2).expect("a beam of two returns");
+    let single = (0..right.len())
+        .find(|k| k % 2 == 1 && right[*k].place.is_nan() && right[k - 1].place.is_finite())
+        .expect("a beam of one return");
+    let mut fewer = right.clone();
+    fewer[double].place = DVec3::NAN;
+    for checked in trial.judge_all(&fewer) {
+        assert_eq!(checked.comparison.wrong().map(|(place, _)| place).collect::<Vec<_>>(), [double]);
+    }
+    let mut more = right.clone();
+    more[single] = Point { place: right[single - 1].place * 1.25, number: 2, ..right[single - 1] };
+    for checked in trial.judge_all(&more) {
+        assert_eq!(checked.comparison.wrong().map(|(place, _)| place).collect::<Vec<_>>(), [single]);
+    }
+    // A third point of a beam has no place.
+    let third = [right[double - 1], right[double], right[double]].map(|one| Point { number: 9, ..one });
+    let most = right.iter().copied().filter(|one| one.place.is_finite() && one.time != third[0].time);
+    let more: Vec<Point> = most.chain(third).collect();
+    let checked = trial.check(&trial.write(&more, Fields::Keys), Precision::F64).expect("a check");
+    assert!(!checked.passes());
+    assert_eq!(checked.cloud.expect("a cloud").strays, [more.len() - 1]);
+    // A pack whose returns are not the exact ones is refused, although its list has the digest.
+    let pack = trial.folder.path().join("pack");
+    let path = pack.join("return.number.npy");
+    let mut bytes = std::fs::read(&path).expect("returns");
+    let last = bytes.len() - 4;
+    bytes[last] ^= 3;
+    let digest = |bytes: &[u8]| raypencil_files::hex_digits(&raypencil_files::sha256(bytes));
+    let list = std::fs::read_to_string(pack.join("raypack.json")).expect("a list");
+    let old = digest(&std::fs::read(&path).expect("returns"));
+    std::fs::write(&path, &bytes).expect("returns");
+    std::fs::write(pack.join("raypack.json"), list.replace(&old, &digest(&bytes))).expect("a list");
+    let refused = trial.check(&trial.write(&right, Fields::None), Precision::F64).expect_err("a refusal");
+    assert!(refused.contains("others than the exact ones; expected the returns that"), "{refused}");
+}
+
+/// A beam whose first ring has a ray that runs along the edge of a near wall: rounding decides whether the wall is a return.
+#[test]
+fn rounding_may_change_the_returns_of_a_beam() {
+    let cone = Cone { divergence_rad: 0.02, rings: 1 };
+    let pattern = |keep| {
+        let axes = (0..40).map(|k| {
+            let angle = 0.1 * f64::from(k);
+            CastRay::new(DVec3::ZERO, DVec3::new(libm::cos(angle), libm::sin(angle), 0.0))
+        });
+        let axes = PatternRays {
+            shape: vec![40, 1],
+            rays: axes.collect(),
+            times: Some((0..40).map(|k| 0.01 * f64::from(k)).collect()),
+            weights: None,
+            returns: None,
+            elevations_deg: Some(vec![0.0]),
+            mounting: Mounting::HERE,
+        };
+        let beams = cone.spread(&axes, "cone").expect("a cone");
+        PatternRays { returns: Some(Returns { keep, separation_m: 0.5 }), ..beams }
+    };
+    // Before each beam a triangle at 2 m, with an edge through the ray of the ring that is farthest to the left; all round a wall.
+    let rays = pattern(Keep::First).rays;
+    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
+    for beam in rays.chunks(7) {
+        let left = beam[1..]
+            .iter()
+            .max_by(|a, b| {
+                let off = |ray: &CastRay| beam[0].direction.cross(ray.direction).z;
+                off(a).total_cmp(&off(b))
+            })
+            .expect("rays");
+        let (edge, side) = (left.direction * 2.0, DVec3::Z.cross(beam[0].direction));
+        // 30 nm beside the ray: rounding of single precision, which is 14 micrometres here, and none of double precision.
+        let edge = edge + side * 3e-8;
+        let corners = [edge - DVec3::Z * 0.3, edge + DVec3::Z * 0.3, edge + side * 0.05];
+        faces.push([0, 1, 2].map(|k| vertices.len() as u32 + k));
+        vertices.extend(corners.map(|corner| corner.to_array()));
+    }
+    let first = vertices.len() as u32;
+    vertices.extend([[-9.0, -9.0, -9.0], [9.0, -9.0, -9.0], [9.0, 9.0, -9.0], [-9.0, 9.0, -9.0]]);
+    vertices.extend([[-9.0, -9.0, 9.0], [9.0, -9.0, 9.0], [9.0, 9.0, 9.0], [-9.0, 9.0, 9.0]]);
+    for k in 0..4 {
+        let next = (k + 1) % 4;
+        faces.push([first + k, first + next, first + 4 + next]);
+        faces.push([first + k, first + 4 + next, first + 4 + k]);
+    }
+    let mesh = Triangles::new(vertices, faces).expect("a mesh");
+    // What two programs tell whose walls are a little to either side.
+    let moved = |by: f64| {
+        let moved = mesh.vertices().iter().enumerate().map(|(k, vertex)| {
+            let side = DVec3::Z.cross(rays[(k / 3).min(39) * 7].direction);
+            let is_wall = k >= first as usize;
+            if is_wall { *vertex } else { (DVec3::from_array(*vertex) + side * by).to_array() }
+        });
+        Triangles::new(moved.collect(), mesh.faces().to_vec()).expect("a mesh")
+    };
+    for keep in [Keep::First, Keep::UpTo(2)] {
+        let set = NamedRaySet::new("beams", pattern(keep), Sides::Both).expect("a set");
+        let trial = Trial::new(mesh.clone(), set.clone());
+        let mut told = Vec::new();
+        for (by, is_near) in [(1e-6, false), (-1e-6, true)] {
+            let answers = cast(&moved(by), set.set.rays(), Sides::Both, Questions::default(), &Silent);
+            let returns = BeamReturns::of(&answers, &set).expect("returns");
+            let mixed = returns.footprints().iter().filter(|beam| beam.is_mixed()).count();
+            assert_eq!(mixed, if is_near { 40 } else { 0 });
+            let points = trial.points(&returns, &|ray, range, _| ray.origin + ray.direction * range);
+            for fields in [Fields::None, Fields::Keys] {
+                let checked = trial.check(&trial.write(&points, fields), Precision::F32).expect("a check");
+                assert!(checked.passes(), "{keep:?} {by} {fields:?}: {}", checked.document().screen());
+            }
+            told.push(points);
+        }
+        // In double precision the wall is there or it is not; and no rounding excuses a point that is on none of its rays.
+        let wrong = |points: &[Point], precision| {
+            let checked = trial.check(&trial.write(points, Fields::None), precision).expect("a check");
+            checked.comparison.counts().wrong
+        };
+        assert_eq!(wrong(&told[0], Precision::F64), 0);
+        assert!(wrong(&told[1], Precision::F64) >= 40);
+        let shorter: Vec<Point> =
+            told[1].iter().map(|one| Point { place: one.place * 0.99, ..*one }).collect();
+        let there = shorter.iter().filter(|one| one.place.is_finite()).count();
+        assert_eq!(wrong(&shorter, Precision::F32), there as u64);
+    }
+}
