@@ -336,6 +336,8 @@ def test_the_page_says_what_the_two_commands_took(tmp_path: Path) -> None:
     assert "| Python's packages | 90 | 5,000 |\n| all | 94 | 5,026 |" in told
     assert "The second takes 5 minutes; the longest of them raypencil's tracer 4 and Planted 1." in told
     assert "one program after the other, beside other work (its load, when each began, was 0.5 to 4)" in told
+    again = page([quick, replace(slow, times=3)], {}, steps)
+    assert "was 0.5 to 4), up to 3 times in other hours, of which the highest speed stands; threads" in again
     # Where nobody noted the time of one, nothing is said of all.
     some = page([quick, measured(Tracer())], {})
     assert "The second takes" not in some and "not all in the same hour" in some and "installed.tsv" not in some
@@ -394,7 +396,7 @@ def test_the_command(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None
         (kept / "tracer.json").write_text(json.dumps(given))
         assert _command.main(["table", "tracer", "--kept", str(kept), "--time-again"]) == 0
         now = json.loads((kept / "tracer.json").read_text())
-        assert (now == given) is is_kept and now["answers"][:-1] == answers["answers"][:-1]
+        assert (now["answers"] == given["answers"]) is is_kept and now["answers"][:-1] == answers["answers"][:-1] and now["times"] == 2
     assert _command.main(["table", "tracer", "--time-again"]) == 2 and "needs `--kept DIR`" in capsys.readouterr().err
     # Answers to other questions are refused.
     (kept / "tracer.json").write_text('{"jobs": [], "version": "", "machine": "", "answers": []}')

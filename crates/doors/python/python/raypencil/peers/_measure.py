@@ -72,6 +72,7 @@ class Measured:
         speed: rays a second on a ground of 8192 faces; ``None`` where it could not be asked.
         seconds: that all of it took; ``None`` where nobody noted them.
         load: processes that wanted a core, a mean of the minute before; ``None`` as well.
+        times: how often the speed was asked; it is the highest.
     """
 
     peer: Peer
@@ -83,6 +84,7 @@ class Measured:
     speed: float | None
     seconds: float | None = None
     load: float | None = None
+    times: int = 1
 
     @property
     def total(self) -> Counts:
@@ -163,7 +165,7 @@ def measure(
         data = json.loads(file.read_text(encoding="utf-8"))
         if data["jobs"] == jobs() and "machine" in data:
             whole = of_answers(one, data["version"], data["machine"], data["answers"])
-            measured.append(replace(whole, seconds=data.get("seconds"), load=data.get("load")))
+            measured.append(replace(whole, seconds=data.get("seconds"), load=data.get("load"), times=data.get("times", 1)))
         else:
             missing[name] = f"{file} is of other questions: remove it"
     return measured, missing
@@ -190,7 +192,8 @@ def time_again(names: Sequence[str], kept: Path, tell: Callable[[str], None] = l
         old, new = data["answers"][at].get("answer"), told["answer"]
         if old is None or new["rays"] / new["seconds"] > old["rays"] / old["seconds"]:
             data["answers"][at] = told
-            file.write_text(json.dumps(data) + "\n", encoding="utf-8")
+        data["times"] = data.get("times", 1) + 1
+        file.write_text(json.dumps(data) + "\n", encoding="utf-8")
 
 
 def _load() -> float | None:

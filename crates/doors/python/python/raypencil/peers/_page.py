@@ -181,7 +181,7 @@ def page(measured: Sequence[Measured], missing: Mapping[str, str], steps: Sequen
         f"Rays a second: on 8192 faces, on a machine of {here}, {_when(measured, here)}; threads as each program takes them by itself,"
         " and through Python or Node where that is how it is called; crates are asked from Rust, in one thread. It says what a call costs,"
         " not what an engine can do. The best of"
-        " five runs or more (`--time-again` adds five); read the power of ten, for other work on the machine makes some rows slower." + _elsewhere(measured, here),
+        " five runs or more; read the power of ten, for other work on the machine makes some rows slower." + _elsewhere(measured, here),
         "",
         f"![Wrong rays against rays a second]({SPEED_FIGURE})",
         "",
@@ -242,7 +242,9 @@ def _when(measured: Sequence[Measured], here: str) -> str:
     loads = [load for _, load in _asking(measured, here) if load is not None]
     if not loads:
         return "not all in the same hour"
-    return f"one program after the other, beside other work (its load, when each began, was {min(loads):g} to {max(loads):g})"
+    told = f"one program after the other, beside other work (its load, when each began, was {min(loads):g} to {max(loads):g})"
+    most = max(one.times for one in measured)
+    return told if most == 1 else f"{told}, up to {most} times in other hours, of which the highest speed stands"
 
 
 def _made(measured: Sequence[Measured], here: str, steps: Sequence[Step]) -> list[str]:
