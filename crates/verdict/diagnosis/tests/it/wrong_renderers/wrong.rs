@@ -137,8 +137,15 @@ fn is_alike<'m>(made: impl Iterator<Item = &'m [Mistake]> + Clone, reason: &Reas
     let shifts = made.clone().filter_map(|all| all.iter().find_map(cells_off));
     match told {
         Mistake::Rounded { quantum, .. } if has(&|one| matches!(one, Mistake::HalfPrecision(_))) => {
-            is_whole && quantum.to_bits().trailing_zeros() >= 52
+            let in_units = made.clone().flatten().filter_map(|one| match one {
+                Mistake::Unit(unit) => Some(quantum / unit.to_metres(1.0)),
+                _ => None,
+            });
+            let mut quanta = in_units.chain([*quantum]);
+            is_whole && quanta.any(|quantum| quantum.to_bits().trailing_zeros() >= 52)
         }
+        // What another beam holds is what this one would, stood where that one stands.
+        Mistake::Posed { .. } => is_whole && has(&|one| matches!(one, Mistake::HoldsBeam(_))),
         // Lengths in another unit, which were rounded to a quantum of that unit.
         Mistake::Rounded { of, quantum, down }
             if made.clone().flatten().any(|one| matches!(one, Mistake::Unit(_))) =>
