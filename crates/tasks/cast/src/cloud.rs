@@ -4,6 +4,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use raypencil_files::{FileError, write_atomically};
+use raypencil_referee::Margins;
 use raypencil_scene::pattern::Mounting;
 use raypencil_scene::{NamedRaySet, Pose, Reading};
 
@@ -134,6 +135,8 @@ impl CloudMap {
 /// With returns there is a point for each of them that is told, and further properties: `range`, `mean_range` and `strength` (double),
 /// `share`, `share_other` and `share_missed` (float), `return` and `returns` (ushort), `mixed` (uchar).
 ///
+/// With margins there are `margin_face` and `margin_surface` (double), the proven lower ends of those of the ray, last.
+///
 /// Comments `map_origin_m X Y Z` and `map_system NAME` name the map: what is to be added to each point, metres.
 ///
 /// # Errors
@@ -153,6 +156,10 @@ pub fn write_ply(
              property uchar mixed\n"
         }
     };
+    let of_margins = match answers.margins {
+        None => "",
+        Some(_) => "property double margin_face\nproperty double margin_surface\n",
+    };
     let points = returns.map_or(answers.counts().0, |returns| returns.told().iter().flatten().count());
     write_atomically(path, |file| {
         write!(
@@ -160,7 +167,7 @@ pub fn write_ply(
             "ply\nformat binary_little_endian 1.0\ncomment raypencil cast, frame of the mesh\n{map}\
              element vertex {points}\n\
              property double x\nproperty double y\nproperty double z\nproperty uint face\n\
-             property double cos_incidence\n{of_returns}end_header\n",
+             property double cos_incidence\n{of_returns}{of_margins}end_header\n",
         )?;
         for spot in spots(answers, returns) {
             let Some(hit) = spot.read.hit() else { continue };
@@ -169,18 +176,22 @@ pub fn write_ply(
             }
             file.write_all(&hit.face.0.to_le_bytes())?;
             file.write_all(&hit.cos_incidence.to_le_bytes())?;
-            let Some(SpotReturn { number, returns, mixed, shares, mean_range }) = spot.of_return else {
-                continue;
-            };
-            for value in [hit.range, mean_range, spot.intensity] {
-                file.write_all(&value.to_le_bytes())?;
+            if let Some(SpotReturn { number, returns, mixed, shares, mean_range }) = spot.of_return {
+                for value in [hit.range, mean_range, spot.intensity] {
+                    file.write_all(&value.to_le_bytes())?;
+                }
+                for share in shares {
+                    file.write_all(&(share as f32).to_le_bytes())?;
+                }
+                file.write_all(&number.to_le_bytes())?;
+                file.write_all(&returns.to_le_bytes())?;
+                file.write_all(&[mixed])?;
             }
-            for share in shares {
-                file.write_all(&(share as f32).to_le_bytes())?;
+            if let Some(margins) = &answers.margins {
+                let Margins { face, surface } = margins[spot.ray];
+                file.write_all(&face.lo.to_le_bytes())?;
+                file.write_all(&surface.lo.to_le_bytes())?;
             }
-            file.write_all(&number.to_le_bytes())?;
-            file.write_all(&returns.to_le_bytes())?;
-            file.write_all(&[mixed])?;
         }
         Ok(())
     })
@@ -261,6 +272,9 @@ impl CloudFrame {
 /// number. `intensity` is then the light of the return, and after `face` there are `mean_range`, `share`, `share_other` and `share_missed`
 /// (float32), `return` and `returns` (uint16) and `mixed` (uint8).
 ///
+/// With margins there are `margin_face` and `margin_surface` (float32) last: the proven lower ends of those of the ray, rounded down; NaN in the
+/// places of returns that are none.
+///
 /// Comments `# map_origin_m X Y Z` and `# map_system NAME` name the map in which the mesh's frame lies.
 ///
 /// VIEWPOINT has the pose of the sensor in the mesh's frame, its first one, if the points are in the sensor's frame: viewers that
@@ -300,6 +314,10 @@ pub fn write_pcd(
             " 1 1 1 1 1 1 1",
         ],
     };
+    let [margin_fields, margin_sizes, margin_types, margin_counts] = match answers.margins {
+        None => [""; 4],
+        Some(_) => [" margin_face margin_surface", " 4 4", " F F", " 1 1"],
+    };
     let word = |number: u64| u16::try_from(number).unwrap_or(u16::MAX);
     let time_of = |index: usize| set.times.as_ref().map_or(0.0, |times| times[index]);
     let first_time = set.times.iter().flatten().copied().reduce(f64::min).unwrap_or(0.0);
@@ -319,9 +337,9 @@ pub fn write_pcd(
         write!(
             file,
             "# .PCD v0.7 - Point Cloud Data file format\n# raypencil cast, frame of {}\n{map}VERSION 0.7\n\
-             FIELDS x y z intensity ring time timestamp channel range face{more_fields}\n\
-             SIZE 4 4 4 4 2 4 8 2 4 4{more_sizes}\nTYPE F F F F U F F U F U{more_types}\n\
-             COUNT 1 1 1 1 1 1 1 1 1 1{more_counts}\n\
+             FIELDS x y z intensity ring time timestamp channel range face{more_fields}{margin_fields}\n\
+             SIZE 4 4 4 4 2 4 8 2 4 4{more_sizes}{margin_sizes}\nTYPE F F F F U F F U F U{more_types}{margin_types}\n\
+             COUNT 1 1 1 1 1 1 1 1 1 1{more_counts}{margin_counts}\n\
              WIDTH {width}\nHEIGHT {height}\nVIEWPOINT {x} {y} {z} {qw} {qx} {qy} {qz}\nPOINTS {count}\nDATA binary\n",
             frame.words()
         )?;
@@ -344,20 +362,33 @@ pub fn write_pcd(
             file.write_all(&word(channel).to_le_bytes())?;
             file.write_all(&(range as f32).to_le_bytes())?;
             file.write_all(&face.to_le_bytes())?;
-            let Some(SpotReturn { number, returns, mixed, shares: [this, other, missed], mean_range }) =
+            let is_of_ray = of_return.is_none_or(|told| told.number != 0);
+            if let Some(SpotReturn { number, returns, mixed, shares: [this, other, missed], mean_range }) =
                 of_return
-            else {
-                continue;
-            };
-            for value in [mean_range, this, other, missed] {
-                file.write_all(&(value as f32).to_le_bytes())?;
+            {
+                for value in [mean_range, this, other, missed] {
+                    file.write_all(&(value as f32).to_le_bytes())?;
+                }
+                file.write_all(&number.to_le_bytes())?;
+                file.write_all(&returns.to_le_bytes())?;
+                file.write_all(&[mixed])?;
             }
-            file.write_all(&number.to_le_bytes())?;
-            file.write_all(&returns.to_le_bytes())?;
-            file.write_all(&[mixed])?;
+            if let Some(margins) = &answers.margins {
+                let Margins { face, surface } = margins[ray];
+                for low in [face.lo, surface.lo] {
+                    let low = if is_of_ray { rounded_down(low) } else { f32::NAN };
+                    file.write_all(&low.to_le_bytes())?;
+                }
+            }
         }
         Ok(())
     })
+}
+
+/// The greatest number of single precision that is not above a proven lower limit.
+fn rounded_down(low: f64) -> f32 {
+    let near = low as f32;
+    if f64::from(near) > low { near.next_down() } else { near }
 }
 
 /// The shape of what has places in a cloud, rays or beams; the rays of each; and its number of places.

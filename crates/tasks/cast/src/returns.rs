@@ -67,8 +67,8 @@ impl BeamReturns {
         Some(Self::of_first(&answers.first, set.returns?, set.weights.as_ref()?))
     }
 
-    /// The same from what is read by each ray; beams have as many rays as there are weights.
-    pub(crate) fn of_first(first: &[Reading<FirstHit>], wanted: Returns, weights: &[f64]) -> Self {
+    /// The same from what is read by each ray; beams have as many rays as there are weights. Ranges and cosines alone decide.
+    pub fn of_first(first: &[Reading<FirstHit>], wanted: Returns, weights: &[f64]) -> Self {
         let rays_of_beam = weights.len();
         let beams: Vec<Beam> = first
             .par_chunks(rays_of_beam)

@@ -96,6 +96,12 @@ impl RayPackChecked {
             cloud.frame.words(),
             cloud.assigned
         ));
+        if let Some(places) = cloud.returns_of_beam {
+            let beams = counted(self.rays.rays.len().div_ceil(places) as u64, "beam", "beams");
+            notes.push(format!(
+                "A ray is the leading ray of a return of {beams}, up to {places} each; without a return it meets nothing."
+            ));
+        }
         let of_kind = |is_kind: fn(&Wrong) -> bool| {
             self.comparison.wrong().filter(|(_, wrong)| is_kind(wrong)).count() as u64
         };

@@ -212,3 +212,62 @@ fn headers_name_the_map_in_which_the_mesh_lies() {
         "{pcd}"
     );
 }
+
+/// A ray that meets a plate 0.25 m from its edge, one that passes 0.5 m beside it, and one through its diagonal.
+#[test]
+fn margins_are_fields_of_clouds() {
+    let corners = vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 4.0, 0.0], [0.0, 4.0, 0.0]];
+    let plate = Triangles::new(corners, vec![[0, 1, 2], [0, 2, 3]]).expect("a plate");
+    let down = |x: f64, y: f64| CastRay::new(DVec3::new(x, y, 1.0), DVec3::NEG_Z);
+    let rays = vec![down(3.75, 1.75), down(4.5, 1.0), down(1.0, 1.0)];
+    let questions = Questions { margins: true, ..Questions::default() };
+    let answers = cast(&plate, &rays, Sides::Both, questions, &Silent);
+    let set = NamedRaySet {
+        name: "rays".into(),
+        shape: vec![3],
+        set: RaySet::new(rays, Sides::Both).expect("rays"),
+        times: None,
+        weights: None,
+        returns: None,
+        elevations_deg: None,
+        mounting: Mounting::HERE,
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let (pcd, ply) = (folder.path().join("cloud.pcd"), folder.path().join("cloud.ply"));
+    write_pcd(&pcd, &answers, (&set, None), CloudFrame::Mesh, &CloudMap::default()).expect("a file");
+    write_ply(&ply, &answers, None, &CloudMap::default()).expect("a file");
+    let bytes = std::fs::read(&pcd).expect("the file");
+    let text = String::from_utf8_lossy(&bytes);
+    for line in [
+        "FIELDS x y z intensity ring time timestamp channel range face margin_face margin_surface\n",
+        "SIZE 4 4 4 4 2 4 8 2 4 4 4 4\n",
+        "TYPE F F F F U F F U F U F F\n",
+        "COUNT 1 1 1 1 1 1 1 1 1 1 1 1\n",
+    ] {
+        assert!(text.contains(line), "{line}");
+    }
+    let points = &bytes[bytes.len() - 3 * 48..];
+    let single = |point: usize, at: usize| {
+        let bytes = points[48 * point + at..][..4].try_into().expect("four bytes");
+        f32::from_le_bytes(bytes)
+    };
+    let margins = answers.margins.as_ref().expect("margins");
+    for (ray, margin) in margins.iter().enumerate() {
+        for (at, low) in [(40, margin.face.lo), (44, margin.surface.lo)] {
+            let stored = f64::from(single(ray, at));
+            assert!(stored <= low && low - stored <= 1e-6 * low, "ray {ray}: {stored} of {low}");
+        }
+    }
+    // The edge at x = 4 is 0.25 m from the first ray, and 0.5 m from the second; the third runs on the diagonal.
+    let near = |found: f32, expected: f32| (found - expected).abs() < 1e-6;
+    assert!(near(single(0, 44), 0.25) && near(single(1, 44), 0.5), "{} {}", single(0, 44), single(1, 44));
+    assert_eq!(single(2, 40), 0.0);
+    // The hits alone are in the PLY file: the first and the third ray.
+    let bytes = std::fs::read(&ply).expect("the file");
+    let text = String::from_utf8_lossy(&bytes);
+    assert!(text.contains("property double margin_face\nproperty double margin_surface\nend_header\n"));
+    let double = |at: usize| f64::from_le_bytes(bytes[at..][..8].try_into().expect("eight bytes"));
+    let (first, third) = (bytes.len() - 2 * 52, bytes.len() - 52);
+    assert_eq!([double(first + 36), double(first + 44)], [margins[0].face.lo, margins[0].surface.lo]);
+    assert_eq!([double(third + 36), double(third + 44)], [margins[2].face.lo, margins[2].surface.lo]);
+}

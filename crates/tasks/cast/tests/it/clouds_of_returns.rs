@@ -172,6 +172,11 @@ fn right_returns_pass_by_order_by_keys_and_by_numbers() {
         .expect("files");
     let checked = trial.check(&folder.join("cloud-sensor.pcd"), Precision::F64).expect("a check");
     assert!(checked.passes(), "{:?}", checked.why);
+    let text = checked.document().screen();
+    assert!(
+        text.contains("A ray is the leading ray of a return of 960 beams, up to 2 each; without a return"),
+        "{text}"
+    );
     let cloud = checked.cloud.expect("a cloud");
     assert!(cloud.has_range);
     assert_eq!(cloud.assigned, "by ring and time");

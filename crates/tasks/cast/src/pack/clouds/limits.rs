@@ -44,6 +44,11 @@ fn shortest(low: f64, high: f64) -> Option<f64> {
     })
 }
 
+/// A range of a sensor without the rounding of its rays' directions.
+fn told(range: f64) -> f64 {
+    if range.is_finite() { (range * 1e9).round() / 1e9 } else { range }
+}
+
 /// Ranges at which a simulator ends: what it tells of no surface, and of none beyond them.
 pub(super) fn of_ranges<'a>(list: &mut List<'a>, trial: &Trial, exact: &'a ExactCast<'a>, sides: Sides) {
     let Some(cloud) = &trial.cloud else { return };
@@ -66,6 +71,7 @@ pub(super) fn of_ranges<'a>(list: &mut List<'a>, trial: &Trial, exact: &'a Exact
     let asked = |of: fn(&CastRay) -> f64, ray: &CastRay| of(ray) * ray.direction.length();
     let longest = trial.rays.iter().map(|ray| asked(|ray| ray.t_max, ray)).fold(0.0, f64::max);
     let shortest_asked = trial.rays.iter().map(|ray| asked(|ray| ray.t_blind, ray)).fold(0.0, f64::max);
+    let (told_longest, told_shortest) = (told(longest), told(shortest_asked));
     let beyond = missing.iter().copied().filter(|range| *range > farthest).fold(f64::INFINITY, f64::min);
     let has_more = |from: f64| missing.iter().filter(|range| **range >= from).count() >= MIN_FITTED;
     if beyond.is_finite()
@@ -74,7 +80,7 @@ pub(super) fn of_ranges<'a>(list: &mut List<'a>, trial: &Trial, exact: &'a Exact
         && let Some(by) = shortest(farthest, beyond)
     {
         let words = format!(
-            "points end at {by}, or at any distance from {farthest:.4} to {beyond:.4}: the sensor's longest range is {longest}"
+            "points end at {by}, or at any distance from {farthest:.4} to {beyond:.4}: the sensor's longest range is {told_longest}"
         );
         list.add(words, true, move |trial| {
             for ray in trial.rays.iter_mut().filter(|ray| ray.t_max > 0.0) {
@@ -90,7 +96,7 @@ pub(super) fn of_ranges<'a>(list: &mut List<'a>, trial: &Trial, exact: &'a Exact
         && let Some(by) = shortest(before * (1.0 + f64::EPSILON), nearest)
     {
         let words = format!(
-            "points begin at {by}, or at any distance from {before:.4} to {nearest:.4}: the sensor's shortest range is {shortest_asked}"
+            "points begin at {by}, or at any distance from {before:.4} to {nearest:.4}: the sensor's shortest range is {told_shortest}"
         );
         list.add(words, true, move |trial| {
             for ray in trial.rays.iter_mut().filter(|ray| ray.t_max > 0.0) {
@@ -114,6 +120,7 @@ fn of_misses<'a>(list: &mut List<'a>, trial: &Trial, cloud: &CloudPart, exact: &
         return;
     }
     let longest = trial.rays.iter().map(|ray| ray.t_max * ray.direction.length()).fold(0.0, f64::max);
+    let told_longest = told(longest);
     for by in median(invented).map_or_else(Vec::new, rounded).into_iter().filter(|by| *by > 0.0) {
         let is_nearer = by < longest * (1.0 - 1e-9);
         let words = match is_nearer {
@@ -122,7 +129,7 @@ fn of_misses<'a>(list: &mut List<'a>, trial: &Trial, cloud: &CloudPart, exact: &
             }
             false => format!("rays that meet nothing have a point at {by}: they have none"),
             true => format!(
-                "rays that meet nothing before {by} have a point there: they have none, and the longest range is {longest}"
+                "rays that meet nothing before {by} have a point there: they have none, and the longest range is {told_longest}"
             ),
         };
         list.add(words, true, move |trial| {

@@ -28,6 +28,8 @@ pub struct CloudFacts {
     pub source: Option<String>,
     /// Number of its points, without those that stand for no hit.
     pub points: usize,
+    /// Returns that may be told of each beam; `None`: rays stand for themselves.
+    pub returns_of_beam: Option<usize>,
     /// How they were laid on the rays, in words.
     pub assigned: &'static str,
     /// Indices of points that belong to no ray, or to one that has another point.
@@ -186,6 +188,7 @@ pub(in crate::pack) fn read_cloud_of<'a>(
         frame,
         source,
         points: real,
+        returns_of_beam: beams.map(Beams::places),
         assigned: found.by,
         strays: found.strays,
         has_range: ranges.is_some(),
