@@ -155,6 +155,82 @@ fn files_lie_beside_the_toml_file() {
     assert_ne!(loaded.sha256, raypencil_files::hex_digits(&raypencil_files::sha256(text.as_bytes())));
 }
 
+/// Times and angles in a file, as the scan patterns of Livox's simulator have them.
+#[test]
+fn angles_of_a_file_are_rays_with_times() {
+    let folder = tempfile::tempdir().unwrap();
+    let read = |text: &str, keys: &str| {
+        std::fs::write(folder.path().join("rosette.csv"), text).unwrap();
+        let toml = folder.path().join("sets.toml");
+        let set =
+            format!("[[rays]]\nname = \"a\"\nangles = {{ file = \"rosette.csv\"{keys} }}\nstart_s = 5\n");
+        std::fs::write(&toml, set).unwrap();
+        read_ray_sets(&toml).map(|mut loaded| loaded.sets.remove(0)).map_err(|error| error.to_string())
+    };
+    let set =
+        read("# a rosette\n0,90,0\n0.25,-90,30\n0.5,180,-90\n", ", min_range_m = 0.1, max_range_m = 40")
+            .unwrap();
+    assert_eq!(set.shape, [3]);
+    assert_eq!(set.times, Some(vec![5.0, 5.25, 5.5]));
+    // To the left; to the right, 30 degrees up; straight down.
+    let expected = [DVec3::Y, DVec3::new(0.0, -(0.75_f64.sqrt()), 0.5), DVec3::NEG_Z];
+    for (ray, expected) in set.set.rays().iter().zip(expected) {
+        assert!((ray.direction - expected).length() < 1e-15, "{}", ray.direction);
+        assert_eq!((ray.origin, ray.t_blind, ray.t_max), (DVec3::ZERO, 0.1, 40.0));
+    }
+    // Zeniths are elevations that count from straight up.
+    let zeniths = read("Time/s,Azimuth/deg,Zenith/deg\n0,90,90\n0.25,-90,60\n0.5,180,180\n", "").unwrap();
+    let elevations =
+        read("time_s, azimuth_deg, elevation_deg\n0,90,0\n0.25,-90,30\n0.5,180,-90\n", "").unwrap();
+    assert_eq!(zeniths, elevations);
+    assert_eq!(zeniths.set.rays()[1].t_max, f64::INFINITY);
+    for (text, keys, message) in [
+        (
+            "0,90\n",
+            "",
+            "rosette.csv: line 1: 2 fields; expected 3 with commas between them: time, azimuth, elevation",
+        ),
+        ("0,90,91\n", "", "line 1: field 3: \"91\"; expected -90 to 90, as time, azimuth, elevation"),
+        ("0,1,2\n0,nan,2\n", "", "line 2: field 2: \"nan\"; expected -360 to 360"),
+        (
+            "1700000000000000000,1,2\n",
+            "",
+            "line 1: field 1: \"1700000000000000000\"; expected -1000000000000 to",
+        ),
+        (
+            "azimuth,time,elevation\n0,1,2\n",
+            "",
+            "line 1: azimuth,time,elevation; expected columns in the order time",
+        ),
+        (
+            "time/ns,azimuth/deg,zenith/deg\n0,1,2\n",
+            "",
+            "line 1: time/ns,azimuth/deg,zenith/deg; expected columns",
+        ),
+        (
+            "time/s,azimuth/rad,zenith/rad\n0,1,2\n",
+            "",
+            "line 1: time/s,azimuth/rad,zenith/rad; expected columns",
+        ),
+        ("# nothing\n", "", "file: no row; expected rows of time"),
+        (
+            "0,1,2\n",
+            ", min_range_m = 2, max_range_m = 1",
+            "`rays 0.angles.min_range_m` is 2; expected at most `max_range_m`, 1",
+        ),
+    ] {
+        let error = read(text, keys).unwrap_err();
+        assert!(error.contains(message), "{error}");
+    }
+    let error = one("angles = { min_range_m = 1 }\n").unwrap_err();
+    assert!(error.contains("`rays 0.angles.file` is missing; expected rows of time, azimuth"), "{error}");
+    let error = one("angles = { file = \"no.csv\" }\n").unwrap_err();
+    assert!(
+        error.contains("`rays 0.angles.file`: there is no file \"no.csv\"; expected angles as CSV"),
+        "{error}"
+    );
+}
+
 #[test]
 fn what_is_no_ray_set_is_refused_with_its_place() {
     let spin = "spinning = { preset = \"vlp-16\" }\n";
@@ -162,12 +238,12 @@ fn what_is_no_ray_set_is_refused_with_its_place() {
     for (text, message) in [
         (
             "",
-            "r.toml:1:1: `rays 0` has no pattern; expected exactly one of `file`, `spinning`, `grid` and `cone`",
+            "r.toml:1:1: `rays 0` has no pattern; expected exactly one of `file`, `spinning`, `grid`, `angles` and `cone`",
         ),
         (
             "file = \"a.npy\"\nspinning = { preset = \"vlp-16\" }\n",
-            "r.toml:1:1: `rays 0` has `file` and `spinning`; expected exactly one of `file`, `spinning`, `grid` and \
-             `cone`",
+            "r.toml:1:1: `rays 0` has `file` and `spinning`; expected exactly one of `file`, `spinning`, `grid`, \
+             `angles` and `cone`",
         ),
         (
             "file = \"no.npy\"",
@@ -246,7 +322,7 @@ fn what_is_no_ray_set_is_refused_with_its_place() {
         ),
         (
             "cone = { of = {}, divergence_mrad = 1 }",
-            "r.toml:3:15: `rays 0.cone.of` has no pattern; expected exactly one of `file`, `spinning` and `grid`",
+            "r.toml:3:15: `rays 0.cone.of` has no pattern; expected exactly one of `file`, `spinning`, `grid` and `angles`",
         ),
         (
             "cone = { of = { spinning = { preset = \"vlp-16\" } }, divergence_mrad = 1, rings = 64 }",

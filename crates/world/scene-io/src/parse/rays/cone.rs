@@ -6,6 +6,7 @@ use toml::Spanned;
 use raypencil_scene::pattern::{Cone, Keep, Returns};
 
 use crate::parse::key::{Key, Word};
+use crate::parse::rays::angles::AnglesKeys;
 use crate::parse::rays::grid::GridKeys;
 use crate::parse::rays::spinning::SpinningKeys;
 use crate::parse::source::Source;
@@ -36,6 +37,7 @@ pub(super) struct OfKeys {
     pub file: Key<String>,
     pub spinning: Key<SpinningKeys>,
     pub grid: Key<GridKeys>,
+    pub angles: Key<AnglesKeys>,
 }
 
 impl Source<'_> {

@@ -1,5 +1,6 @@
 //! `[[rays]]`: named sets of rays, from files and from patterns of range sensors.
 
+mod angles;
 mod cone;
 mod grid;
 mod mount;
@@ -37,6 +38,7 @@ pub(crate) struct RaysKeys {
     times_file: Key<String>,
     spinning: Key<spinning::SpinningKeys>,
     grid: Key<grid::GridKeys>,
+    angles: Key<angles::AnglesKeys>,
     cone: Key<ConeKeys>,
     sides: Key<String>,
     start_s: Key<f64>,
@@ -123,7 +125,12 @@ impl Source<'_> {
     ) -> Result<Pattern, SceneIoError> {
         let name = format!("rays {index}");
         let keys = table.get_ref();
-        let inner = PatternKeys { file: &keys.file, spinning: &keys.spinning, grid: &keys.grid };
+        let inner = PatternKeys {
+            file: &keys.file,
+            spinning: &keys.spinning,
+            grid: &keys.grid,
+            angles: &keys.angles,
+        };
         self.pattern((&name, table.span()), inner, Some(&keys.cone), digests)
     }
 

@@ -1,4 +1,4 @@
-//! What a set is made of: `file`, `spinning`, `grid`, or a `cone` of one of these.
+//! What a set is made of: `file`, `spinning`, `grid`, `angles`, or a `cone` of one of these.
 
 use std::ops::Range;
 use std::path::Path;
@@ -10,6 +10,7 @@ use raypencil_scene::pattern::{Cone, Grid, Mounting, PatternRays, Returns, Spinn
 
 use crate::digest::NamedDigest;
 use crate::parse::key::Key;
+use crate::parse::rays::angles::{Angles, AnglesKeys};
 use crate::parse::rays::cone::{ConeKeys, OfKeys};
 use crate::parse::rays::grid::GridKeys;
 use crate::parse::rays::spinning::SpinningKeys;
@@ -21,6 +22,7 @@ pub(super) struct PatternKeys<'k> {
     pub file: &'k Key<String>,
     pub spinning: &'k Key<SpinningKeys>,
     pub grid: &'k Key<GridKeys>,
+    pub angles: &'k Key<AnglesKeys>,
 }
 
 /// A pattern whose rays are not made yet.
@@ -28,6 +30,7 @@ pub(super) enum Pattern {
     File(RayArray),
     Spinning(Spinning),
     Grid(Grid),
+    Angles(Angles),
     Cone(Cone, Option<Returns>, Box<Pattern>),
 }
 
@@ -38,6 +41,7 @@ impl Pattern {
             Self::File(array) => array.rays.len() as u64,
             Self::Spinning(head) => head.steps.saturating_mul(head.channels.len() as u64),
             Self::Grid(grid) => grid.columns.saturating_mul(grid.rows),
+            Self::Angles(angles) => angles.rows.len() as u64,
             Self::Cone(cone, _, inner) => cone.count().saturating_mul(inner.count()),
         }
     }
@@ -56,6 +60,7 @@ impl Pattern {
             }),
             Self::Spinning(head) => head.rays(&format!("{name}.spinning")),
             Self::Grid(grid) => grid.rays(&format!("{name}.grid")),
+            Self::Angles(angles) => angles.rays(&format!("{name}.angles")),
             Self::Cone(cone, returns, inner) => {
                 let rays = cone.spread(&inner.rays(name)?, &format!("{name}.cone"))?;
                 Ok(PatternRays { returns, ..rays })
@@ -77,14 +82,15 @@ impl Source<'_> {
             ("file", keys.file.is_some()),
             ("spinning", keys.spinning.is_some()),
             ("grid", keys.grid.is_some()),
+            ("angles", keys.angles.is_some()),
             ("cone", cone.is_some_and(Option::is_some)),
         ];
         let given: Vec<String> =
             is_given.iter().filter(|(_, given)| *given).map(|(key, _)| format!("`{key}`")).collect();
         if given.len() != 1 {
             let wanted = match cone {
-                Some(_) => "`file`, `spinning`, `grid` and `cone`",
-                None => "`file`, `spinning` and `grid`",
+                Some(_) => "`file`, `spinning`, `grid`, `angles` and `cone`",
+                None => "`file`, `spinning`, `grid` and `angles`",
             };
             let found = match given.len() {
                 0 => "no pattern".to_string(),
@@ -101,11 +107,14 @@ impl Source<'_> {
         if let Some(grid) = keys.grid {
             return self.grid(&format!("{name}.grid"), grid).map(Pattern::Grid);
         }
-        let Some(cone) = cone.and_then(Option::as_ref) else { unreachable!("one of the four is given") };
+        if let Some(angles) = keys.angles {
+            return self.angles(&format!("{name}.angles"), angles, digests).map(Pattern::Angles);
+        }
+        let Some(cone) = cone.and_then(Option::as_ref) else { unreachable!("one of the five is given") };
         let name = format!("{name}.cone");
         let (cone, returns, of) = self.cone(&name, cone)?;
-        let OfKeys { file, spinning, grid } = of.get_ref();
-        let keys = PatternKeys { file, spinning, grid };
+        let OfKeys { file, spinning, grid, angles } = of.get_ref();
+        let keys = PatternKeys { file, spinning, grid, angles };
         let inner = self.pattern((&format!("{name}.of"), of.span()), keys, None, digests)?;
         Ok(Pattern::Cone(cone, returns, Box::new(inner)))
     }
