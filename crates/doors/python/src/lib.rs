@@ -11,6 +11,7 @@
 //! array          arrays that are made without Python and handed to it without a copy
 //! mesh, rays     triangles and rays from arrays
 //! cast, judge    rays answered; other answers judged
+//! returns        the returns of beams with a width
 //! scene          scenes from names, files and texts
 //! maps           what a renderer returns, as arrays
 //! render, validation, pack, check, diff, recording     one file for each call
@@ -41,6 +42,7 @@ mod picture;
 mod rays;
 mod recording;
 mod render;
+mod returns;
 mod scene;
 mod sweep;
 mod validation;
@@ -77,6 +79,8 @@ mod _raypencil {
     use crate::recording::read_recording;
     #[pymodule_export]
     use crate::render::render;
+    #[pymodule_export]
+    use crate::returns::beam_returns;
     #[pymodule_export]
     use crate::scene::{SceneCore, refuse_contradictions};
     #[pymodule_export]

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use raypencil::io::{LoadedScene, Overrides, SceneIoError, Setting, Subject, load, load_text_with, quoted};
+use raypencil::pattern::{Keep, Returns};
 use raypencil::{Mounted, Pose};
 
 use crate::array::Array;
@@ -197,6 +198,15 @@ impl SceneCore {
         for set in self.loaded.scene.ray_sets() {
             let arrays = set_arrays(set).into_dict(py)?;
             arrays.set_item("fronts_only", set.set.sides() == raypencil::Sides::Fronts)?;
+            if let Some(Returns { keep, separation_m }) = set.returns {
+                match keep {
+                    Keep::First => arrays.set_item("keep", "first")?,
+                    Keep::Strongest => arrays.set_item("keep", "strongest")?,
+                    Keep::Last => arrays.set_item("keep", "last")?,
+                    Keep::UpTo(most) => arrays.set_item("keep", most)?,
+                }
+                arrays.set_item("separation_m", separation_m)?;
+            }
             dict.set_item(&set.name, arrays)?;
         }
         Ok(dict)

@@ -165,6 +165,33 @@ def test_sets_of_rays_are_arrays_and_answered_as_by_the_command(command: Command
     assert np.array_equal(blind.too_near, answers.hit & (answers.t < 5))
 
 
+def test_returns_of_beams_are_those_of_the_files(command: Command, tmp_path: Path) -> None:
+    grid = "{ grid = { columns = 12, rows = 6, width_deg = 90, height_deg = 50 } }"
+    for keep in ("first", "strongest", "last", 2):
+        asked = f"{{ keep = {keep!r}, separation_m = 0.25 }}"
+        text = SMALL + (
+            f'[[rays]]\nname = "wide"\ncone = {{ of = {grid}, divergence_mrad = 60, rings = 2, returns = {asked} }}\n'
+            "position_m = [0, 0, 1.2]\npitch_down_deg = 30\n"
+        ).replace("'", '"')
+        (tmp_path / "wide.toml").write_text(text)
+        command("cast", "wide.toml", "-o", f"of_{keep}")
+        scene = Scene(text)
+        wide = scene.ray_sets["wide"]
+        assert wide.returns == raypencil.Returns(keep, 0.25)
+        found = wide.beam_returns(raypencil.cast(scene, wide.rays))
+        files = sorted((tmp_path / f"of_{keep}").rglob("return.*.npy"))
+        assert sorted(found) == [file.name.split(".")[1] for file in files] and len(files) == 11
+        for file in files:
+            assert same_bits(found[file.name.split(".")[1]], np.load(file)), file.name
+        assert (found["count"] >= 1).any()
+    alone = Scene(SMALL + '[[rays]]\nname = "mast"\nspinning = { preset = "vlp-16", steps = 2 }\n').ray_sets["mast"]
+    assert alone.returns is None
+    with pytest.raises(RaypencilError, match="asks for no returns"):
+        alone.beam_returns(raypencil.cast(scene, alone.rays))
+    with pytest.raises(RaypencilError, match=r"answers to rays of shape \(2, 16\); expected those of the set"):
+        wide.beam_returns(raypencil.cast(scene, alone.rays))
+
+
 def test_generated_ground_is_the_same_by_table_and_by_call() -> None:
     scene = Scene(terrain={"generate": {"preset": "smooth", "seed": 3, "extent_m": 12}})
     mesh = raypencil.terrain.generate("smooth", 3, extent=12)

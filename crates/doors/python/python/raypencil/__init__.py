@@ -16,7 +16,7 @@ from ._mesh import Mesh, load_mesh
 from ._packs import CheckResult, check, pack, pack_rays, read
 from ._raypencil import __version__
 from ._render import RenderResult, render
-from ._scene import Beam, Camera, Pose, RaySet, Scene
+from ._scene import Beam, Camera, Pose, RaySet, Returns, Scene
 from ._sweep import SweepResult, sweep
 from ._validate import DiffResult, ValidationResult, diff, validate
 
@@ -35,6 +35,7 @@ __all__ = [
     "Mesh",
     "Pose",
     "RaySet",
+    "Returns",
     "RaypencilError",
     "RaypencilFileError",
     "RaypencilFileNotFoundError",

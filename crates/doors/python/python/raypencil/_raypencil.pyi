@@ -159,6 +159,14 @@ def cast(
     warn: bool,
     on_stage: _OnStage = None,
 ) -> tuple[_Arrays, _Counts, _Decided | None, list[str]]: ...
+def beam_returns(
+    ranges: NDArray[np.float64],
+    cosines: NDArray[np.float64],
+    weights: Sequence[float],
+    beams: Sequence[int],
+    keep: str | int,
+    separation_m: float,
+) -> _Arrays: ...
 def check_rays(rays: NDArray[np.float64], first: int) -> None: ...
 def cast_warnings(
     mesh: MeshCore, rays: NDArray[np.float64], fronts_only: bool, all: bool, counts: _Counts

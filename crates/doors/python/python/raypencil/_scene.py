@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _raypencil, _toml
+from ._cast_result import CastResult
 from ._errors import RaypencilError
 from ._mesh import BUILTIN_NAMES, Mesh, as_mesh
 from ._progress import Progress, stages
@@ -83,6 +84,16 @@ class Beam:
     scene_from_sensor: Pose
 
 
+@dataclass(frozen=True)
+class Returns:
+    """Which returns of a beam with a width are told (docs/guide/lidar.md, "Returns")."""
+
+    #: ``"first"``, ``"strongest"``, ``"last"``, or so many of the strongest.
+    keep: str | int
+    #: Gap between two returns, metres.
+    separation_m: float
+
+
 @dataclass(frozen=True, eq=False)
 class RaySet:
     """A set of rays of a scene, in the scene frame, such as the pattern of a LiDAR."""
@@ -94,10 +105,37 @@ class RaySet:
     times: NDArray[np.float64] | None
     #: Shares of a beam's power along the last dimension, if rays are parts of beams.
     weights: NDArray[np.float64] | None
+    #: Which returns of a beam are told; ``None``: rays stand for themselves.
+    returns: Returns | None
     #: Of a spinning head: the elevation of each channel, degrees.
     elevations_deg: NDArray[np.float64] | None
     #: Whether rays pass through the backs of faces.
     fronts_only: bool
+
+    def beam_returns(self, answers: CastResult) -> dict[str, NDArray[Any]]:
+        """The returns of the beams, from the answers to their rays: ``cast(scene, ray_set.rays)``.
+
+        Arrays by the names of the command's files without ``return.``: of beams (...) ``count``, ``mixed``, ``share_missed``; of
+        returns, (..., places) in the order of their ranges, ``number`` (0: none), ``ray``, ``range`` and ``mean_range`` (metres),
+        ``strength``, ``share``, ``share_other``; of rays ``of_ray``. They are the same bits as those of the files.
+
+        Raises:
+            RaypencilError: the set asks for no returns, or the answers are those of other rays.
+        """
+        if self.returns is None or self.weights is None:
+            raise RaypencilError("the set asks for no returns: its cone has no `returns`")
+        shape = self.rays.shape[:-1]
+        if answers.shape != shape:
+            raise RaypencilError(f"answers to rays of shape {answers.shape}; expected those of the set, {shape}")
+        rows = (-1, shape[-1])
+        return _raypencil.beam_returns(
+            np.ascontiguousarray(answers.range.reshape(rows)),
+            np.ascontiguousarray(answers.cos_incidence.reshape(rows)),
+            self.weights.tolist(),
+            list(shape[:-1]),
+            self.returns.keep,
+            self.returns.separation_m,
+        )
 
 
 class Scene:
@@ -264,7 +302,8 @@ class Scene:
         """The sets of rays of ``[[rays]]``, by name."""
         parts = ("rays", "times", "weights", "elevations_deg", "fronts_only")
         sets: dict[str, dict[str, Any]] = {
-            name: {part: of.get(part) for part in parts} for name, of in self._core.ray_sets.items()
+            name: {part: of.get(part) for part in parts} | {"returns": of.get("keep") and Returns(of["keep"], of["separation_m"])}
+            for name, of in self._core.ray_sets.items()
         }
         return {name: RaySet(**of) for name, of in sets.items()}
 
