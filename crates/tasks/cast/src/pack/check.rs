@@ -165,7 +165,12 @@ pub fn check_ray_pack(
     let mut excused = None;
     if let (Some(case), Some(beams)) = (&case, beams) {
         let comparison = compare_with(&exact, &mesh, case.rays, sides, &stated, precision);
-        excused = Some(beams.excused(case, (&stated, &comparison), (&exact, &mesh, sides), precision));
+        excused = Some(beams.excused(
+            (case.rays, &case.part),
+            (&stated, &comparison),
+            (&exact, &mesh, sides),
+            precision,
+        ));
     }
     if let (Some(case), Some(excused)) = (&mut case, &excused) {
         case.rays = excused;

@@ -108,7 +108,7 @@ fn misses_with_a_point_are_told() {
                 &of(9.5, 9.5),
                 fields,
                 SENSOR,
-                "if rays that meet nothing before 9.5 have a point there: they have none, and the longest range is 100",
+                "if rays that meet nothing before 9.5 have a point there: they have none, and the sensor's longest range is 100",
             );
         }
     }
@@ -149,6 +149,15 @@ fn other_ends_of_ranges_are_told() {
     let between: Vec<f64> = why.split([' ', ':']).filter_map(|word| word.parse().ok()).collect();
     assert!(why.contains("the sensor's longest range is 8"), "{why}");
     assert!(between.iter().any(|low| (9.5..=10.0001).contains(low)), "{why}");
+}
+
+#[test]
+fn a_sensor_without_a_longest_range_is_told_as_such() {
+    let endless = Spinning { max_range_m: f64::INFINITY, ..head() };
+    let trial = Trial::new(&endless, &still());
+    let of_misses = with_misses_at(&trial, 120.0, 120.0);
+    let words = "if rays that meet nothing before 120 have a point there: they have none, and the sensor has no longest range";
+    trial.expect_why(&of_misses, Fields::None, SENSOR, words);
 }
 
 fn dense_and_organised(trial: &Trial, points: &[Point], words: &str) {

@@ -7,7 +7,6 @@ use raypencil_files::Fault;
 use raypencil_mesh_io::{Cloud, CloudColumn};
 use raypencil_scene::CastRay;
 
-use super::keys::NUMBERS_OF_RETURNS;
 use crate::pack::scan::Scan;
 
 /// Greatest share of the points, in a hundred, that may belong to no ray. Tuned: more say that the points were laid on the wrong rays.
@@ -16,6 +15,9 @@ const MAX_STRAY_PERCENT: usize = 1;
 /// How much nearer the nearest ray of a point must be than the next one, as a factor. Tuned: at 3 a point that stands a quarter of
 /// the way from its ray to the next is still told.
 const NEARER: f64 = 3.0;
+
+/// Fields that have the number of a return: this project's own, and that of the LAS format.
+pub(super) const NUMBERS_OF_RETURNS: [&str; 2] = ["return", "return_number"];
 
 /// Cells along each axis of the grid in which rays are looked up by their direction, at most.
 const MAX_CELLS: i32 = 1024;

@@ -5,9 +5,9 @@ use raypencil_referee::ExactCast;
 use raypencil_scene::pattern::{Keep, Returns};
 use raypencil_scene::{CastRay, Precision, Reading, Sides, Triangles};
 
-use super::read::CloudCase;
 use crate::answers::FirstHit;
 use crate::comparison::{Comparison, RayVerdict, Stated, compare_with, normal_error};
+use crate::pack::mistakes::CloudPart;
 use crate::pack::scan::{Scan, ScanReturns};
 use crate::returns::{BeamReturn, BeamReturns};
 
@@ -216,24 +216,24 @@ impl Beams {
     /// beam, and none need be there.
     pub(in crate::pack) fn excused(
         &self,
-        case: &CloudCase<'_>,
+        (rays, part): (&[CastRay], &CloudPart),
         (stated, comparison): (&Stated, &Comparison),
         (exact, mesh, sides): (&ExactCast<'_>, &Triangles, Sides),
         precision: Precision,
     ) -> Vec<CastRay> {
-        let mut asked = case.rays.to_vec();
+        let mut asked = rays.to_vec();
         let places = self.places();
         let mut beams: Vec<usize> = comparison.wrong().map(|(place, _)| place / places).collect();
         beams.dedup();
         beams.retain(|&beam| self.is_open(beam, (exact, mesh, sides), precision));
         for place in beams.into_iter().flat_map(|beam| beam * places..(beam + 1) * places) {
-            if !case.part.raw[place].is_finite() {
+            if !part.raw[place].is_finite() {
                 asked[place] = empty(&asked[place]);
                 continue;
             }
             let is_right = |ray: &CastRay| {
                 let mut alone = stated.some_of(&[place]);
-                case.part.some_of(&[place]).state(&[*ray], &mut alone);
+                part.some_of(&[place]).state(&[*ray], &mut alone);
                 let judged = compare_with(exact, mesh, &[*ray], sides, &alone, precision);
                 !matches!(judged.verdicts[0], RayVerdict::Wrong(_))
             };

@@ -4,15 +4,12 @@ use glam::DVec3;
 use raypencil_mesh_io::{Cloud, CloudColumn};
 use raypencil_scene::CastRay;
 
-use super::assign::{Asked, Assigned};
+use super::assign::{Asked, Assigned, NUMBERS_OF_RETURNS};
 use crate::cloud::{CloudFrame, ranks};
 use crate::pack::scan::Scan;
 
 /// Words for points that are laid on rays by ring and time.
 pub(super) const BY_RING: &str = "by ring and time";
-
-/// Fields that have the number of a return: this project's own, and that of the LAS format.
-pub(super) const NUMBERS_OF_RETURNS: [&str; 2] = ["return", "return_number"];
 
 /// Points of which the elevation is looked at, at most.
 const MAX_MEASURED: usize = 20_000;

@@ -6,7 +6,7 @@ use raypencil_referee::ExactCast;
 use raypencil_scene::{CastRay, Reading, Sides};
 
 use super::fit::{median, rounded};
-use super::mistakes::{List, along_of};
+use super::list::{List, along_of};
 use crate::pack::mistakes::{CloudPart, Trial};
 
 /// Points from which a number is found, at least: of fewer, a number fits whatever is wrong.
@@ -44,9 +44,12 @@ fn shortest(low: f64, high: f64) -> Option<f64> {
     })
 }
 
-/// A range of a sensor without the rounding of its rays' directions.
-fn told(range: f64) -> f64 {
-    if range.is_finite() { (range * 1e9).round() / 1e9 } else { range }
+/// The longest range of a sensor in words, without the rounding of its rays' directions.
+fn longest_words(range: f64) -> String {
+    match range.is_finite() {
+        true => format!("the sensor's longest range is {}", (range * 1e9).round() / 1e9),
+        false => "the sensor has no longest range".into(),
+    }
 }
 
 /// Ranges at which a simulator ends: what it tells of no surface, and of none beyond them.
@@ -71,7 +74,7 @@ pub(super) fn of_ranges<'a>(list: &mut List<'a>, trial: &Trial, exact: &'a Exact
     let asked = |of: fn(&CastRay) -> f64, ray: &CastRay| of(ray) * ray.direction.length();
     let longest = trial.rays.iter().map(|ray| asked(|ray| ray.t_max, ray)).fold(0.0, f64::max);
     let shortest_asked = trial.rays.iter().map(|ray| asked(|ray| ray.t_blind, ray)).fold(0.0, f64::max);
-    let (told_longest, told_shortest) = (told(longest), told(shortest_asked));
+    let told_shortest = (shortest_asked * 1e9).round() / 1e9;
     let beyond = missing.iter().copied().filter(|range| *range > farthest).fold(f64::INFINITY, f64::min);
     let has_more = |from: f64| missing.iter().filter(|range| **range >= from).count() >= MIN_FITTED;
     if beyond.is_finite()
@@ -80,7 +83,8 @@ pub(super) fn of_ranges<'a>(list: &mut List<'a>, trial: &Trial, exact: &'a Exact
         && let Some(by) = shortest(farthest, beyond)
     {
         let words = format!(
-            "points end at {by}, or at any distance from {farthest:.4} to {beyond:.4}: the sensor's longest range is {told_longest}"
+            "points end at {by}, or at any distance from {farthest:.4} to {beyond:.4}: {}",
+            longest_words(longest)
         );
         list.add(words, true, move |trial| {
             for ray in trial.rays.iter_mut().filter(|ray| ray.t_max > 0.0) {
@@ -120,7 +124,6 @@ fn of_misses<'a>(list: &mut List<'a>, trial: &Trial, cloud: &CloudPart, exact: &
         return;
     }
     let longest = trial.rays.iter().map(|ray| ray.t_max * ray.direction.length()).fold(0.0, f64::max);
-    let told_longest = told(longest);
     for by in median(invented).map_or_else(Vec::new, rounded).into_iter().filter(|by| *by > 0.0) {
         let is_nearer = by < longest * (1.0 - 1e-9);
         let words = match is_nearer {
@@ -129,7 +132,8 @@ fn of_misses<'a>(list: &mut List<'a>, trial: &Trial, cloud: &CloudPart, exact: &
             }
             false => format!("rays that meet nothing have a point at {by}: they have none"),
             true => format!(
-                "rays that meet nothing before {by} have a point there: they have none, and the longest range is {told_longest}"
+                "rays that meet nothing before {by} have a point there: they have none, and {}",
+                longest_words(longest)
             ),
         };
         list.add(words, true, move |trial| {

@@ -9,6 +9,7 @@
 //! read       a cloud, its points on their rays, and what is stated by them
 //! turn       how a spinning head turns, from its rays and their times
 //! fit        numbers of a mistake, from the points
+//! list       mistakes in a list, and what undoes most of them
 //! mistakes   what a simulator of a sensor may do otherwise
 //! places     the same of points in the place of others
 //! limits     the same of its ranges, its misses and the steps of its numbers
@@ -20,6 +21,7 @@ mod file;
 pub(super) mod fit;
 mod keys;
 mod limits;
+mod list;
 mod mistakes;
 mod places;
 mod read;

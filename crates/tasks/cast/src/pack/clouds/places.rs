@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3};
 
 use super::beams::Beams;
 use super::keys::Votes;
-use super::mistakes::{List, along};
+use super::list::{List, along};
 use super::read::CloudCase;
 use super::turn::{Turn, turned};
 use crate::cloud::ranks;
