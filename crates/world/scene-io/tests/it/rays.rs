@@ -331,7 +331,7 @@ fn what_is_no_ray_set_is_refused_with_its_place() {
         (
             "spinning = { preset = \"vlp-16\" }\npitch = 3\n",
             "r.toml:4:1: unknown key `pitch`; did you mean `pitch_down_deg`, in degrees? Known keys: `name`, `file`, `times_file`, `spinning`, \
-             `grid`, `cone`, `sides`, `start_s`, `position_m`, `pitch_down_deg`, `yaw_left_deg`, `roll_right_deg`, `poses`, `poses_file`, \
+             `grid`, `angles`, `cone`, `sides`, `start_s`, `position_m`, `pitch_down_deg`, `yaw_left_deg`, `roll_right_deg`, `poses`, `poses_file`, \
              `poses_topic`, `poses_frames`",
         ),
         ("spinning = 3", "r.toml:3:12: the number 3; expected a table of keys, { ... } or [...]"),
