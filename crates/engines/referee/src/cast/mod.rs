@@ -159,6 +159,19 @@ impl<'t> ExactCast<'t> {
         self.tree.seams.get_or_init(|| Seams::of(self.mesh, &self.tree.bvh))
     }
 
+    /// The hierarchy with one face in each place.
+    fn places(&self) -> &Bvh<Triangle> {
+        self.seams().without_copies().unwrap_or(&self.tree.bvh)
+    }
+
+    /// [`walk`](Self::walk) with one face in each place.
+    fn walk_places(&self, ray: &CastRay, visit: impl FnMut(&Triangle) -> Next) {
+        match self.seams().without_copies() {
+            Some(bvh) => walk_bundle(bvh, &bundle(ray), ray, visit),
+            None => self.walk(ray, visit),
+        }
+    }
+
     /// Shows the faces that the ray may meet, and others, nearer ones first, until it is enough.
     #[inline]
     fn walk(&self, ray: &CastRay, visit: impl FnMut(&Triangle) -> Next) {

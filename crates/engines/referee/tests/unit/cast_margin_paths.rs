@@ -242,3 +242,85 @@ fn the_least_size_is_that_of_all_weights_looked_at_exactly() {
     }
     assert!(sizes > 500 && empty > 500, "{sizes} sizes, {empty} without any");
 }
+
+/// Faces that were looked at for the margins of a ray at the middle of the corners of the first face, from above.
+fn looks(corners: &Corners) -> (u64, Margins) {
+    let mesh = mesh(corners, 1.0, DVec3::ZERO);
+    let at = corners[0].iter().sum::<DVec3>() / 4.0;
+    let ray = CastRay::new(at + 4.0 * DVec3::Z, DVec3::NEG_Z);
+    LOOKS.set(0);
+    let margins = ExactCast::new(&mesh).margins(&ray, Sides::Both);
+    (LOOKS.get(), margins)
+}
+
+/// A triangle whose right angle is at the place.
+fn right_triangle(at: DVec3, size: f64) -> [DVec3; 3] {
+    [at, at + size * DVec3::X, at + size * DVec3::Y]
+}
+
+/// Faces that lie in or on one another are looked at a number of times that grows with their number and not with its square.
+#[test]
+fn faces_in_one_place_are_not_looked_at_for_each_of_them() {
+    type Stack = fn(usize, usize) -> [DVec3; 3];
+    let stacks: [(&str, u64, Stack); 5] = [
+        // Of copies one is looked at, however many there are.
+        ("copies", 0, |k, _| {
+            let mut face = right_triangle(DVec3::ZERO, 1.0);
+            face.rotate_left(k % 3);
+            face
+        }),
+        // Copies in two planes, one of which hides a part of the other.
+        ("two places", 0, |k, _| right_triangle(DVec3::NEG_Z * (k % 2) as f64, 1.0 + (k % 2) as f64)),
+        // They share the nearest edge.
+        ("fan", 12, |k, n| {
+            let part = k as f64 / n as f64;
+            [8.0 * DVec3::NEG_Y, DVec3::new(2.0 + part, 0.0, -part), 8.0 * DVec3::Y]
+        }),
+        // Each lies within the next, in one plane.
+        ("nested", 320, |k, n| {
+            let part = k as f64 / n as f64;
+            right_triangle(DVec3::new(-1.0 - part, -1.0 - part, 0.0), 4.0 + 4.0 * part)
+        }),
+        // One below the other.
+        ("layers", 320, |k, n| right_triangle(DVec3::NEG_Z * (k as f64 / n as f64), 1.0)),
+    ];
+    for (name, for_each_face, stack) in stacks {
+        let [(few, _), (many, margins)] = [128, 1024].map(|n| looks(&(0..n).map(|k| stack(k, n)).collect()));
+        assert!(many <= few.max(for_each_face * 1024), "{name}: {few} for 128 faces, {many} for 1024");
+        assert!(margins.surface.lo > 0.0, "{name}: {margins:?}");
+    }
+}
+
+/// A mesh with copies of its faces, begun at another corner, has the margins of the mesh, to the last bit; and a face that is turned over is
+/// no copy.
+#[test]
+fn copies_of_faces_change_no_margin() {
+    let mut random = SplitMix64(49);
+    for (name, family) in FAMILIES {
+        for (size, place) in FRAMES {
+            let corners = family(&mut random);
+            let twice: Corners = corners
+                .iter()
+                .copied()
+                .chain(corners.iter().step_by(2).map(|&[a, b, c]| [b, c, a]))
+                .collect();
+            let [once, twice] = [&corners, &twice].map(|corners| mesh(corners, size, place));
+            let [once, twice] = [&once, &twice].map(ExactCast::new);
+            for _ in 0..60 {
+                let ray = ray(&mut random, &corners, size, place);
+                let sides = if random.below(3) == 0 { Sides::Fronts } else { Sides::Both };
+                let [alone, among] = [&once, &twice].map(|cast| cast.margins(&ray, sides));
+                let [face, surface] = [(&alone.face, &among.face), (&alone.surface, &among.surface)]
+                    .map(|(alone, among)| (bits(alone), bits(among)));
+                assert_eq!(face.0, face.1, "{name}: {ray:?}: {alone:?} and {among:?}");
+                assert_eq!(surface.0, surface.1, "{name}: {ray:?}: {alone:?} and {among:?}");
+            }
+        }
+    }
+    // Of a square one half is there first with its back up: rays that pass through backs do not meet it.
+    let [a, b, c, d] = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
+    let square = mesh(&vec![[a, c, b], [a, b, c], [a, c, d]], 1.0, DVec3::ZERO);
+    let ray = CastRay::new(DVec3::new(0.5, 0.25, 4.0), DVec3::NEG_Z);
+    let margin = ExactCast::new(&square).margins(&ray, Sides::Fronts).surface;
+    assert!(margin.lo <= 0.25 && margin.lo > 0.2499, "{margin:?}");
+}

@@ -47,11 +47,9 @@ impl ExactCast<'_> {
         let nearest: Vec<SeenFace<'_>> =
             nearest.iter().filter_map(|face| Some(SeenFace { face, side: view.side(face)? })).collect();
         let first = nearest.first().map(|first| InPlane::new(*first, frame));
-        // Thousands of faces may lie in one place: those with the same corners have the same conditions.
-        let mut places = BTreeSet::new();
-        let bits = |face: &Triangle| face.corners.map(|corner| corner.to_array().map(f64::to_bits));
-        let distinct: Vec<&SeenFace<'_>> =
-            nearest.iter().filter(|one| places.insert(bits(one.face))).collect();
+        // Thousands of faces may lie in one place: they have the same conditions.
+        let seams = self.seams();
+        let distinct: Vec<&SeenFace<'_>> = nearest.iter().filter(|one| !seams.is_copy(one.face.id)).collect();
         let mut events = Vec::new();
         let mut lo = cap;
         for one in &distinct {
@@ -73,7 +71,7 @@ impl ExactCast<'_> {
         let first_range = frame.ranges()[0];
         let is_between = |range: &[f64; 2]| range[0] <= farthest && range[1] >= first_range;
         let own: BTreeSet<FaceId> = nearest.iter().map(|one| one.face.id).collect();
-        let mut nearby = Nearby::new(&self.tree.bvh);
+        let mut nearby = Nearby::new(self.places());
         while nearby.size() < lo {
             let faces =
                 nearby.open(frame, |_, span| super::frame::least_size(span) < lo && is_between(&span[2]));

@@ -24,15 +24,19 @@ use glam::DVec3;
 use raypencil_scene::{CastRay, FaceId, Side, Sides};
 
 use super::super::quads::Next;
-use super::ExactCast;
 use super::flat::corner_of;
 use super::frame::Frame;
+use super::{ExactCast, take_note_of_a_look};
 
 /// Below it squares come near to the end of f64.
 const LEAST_SLACK: f64 = 1e-140;
 
 /// The roundings of a few operations, as a part of what they give.
 const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
+
+/// Most faces of which it is asked whether they hide an edge. They come roughly from near to far, so one of the first hides it if any does;
+/// of thousands of layers each edge would else be asked for all of them.
+const MAX_ASKED: usize = 64;
 
 /// A number and how far it may be off.
 #[derive(Debug, Clone, Copy)]
@@ -213,8 +217,10 @@ impl ExactCast<'_> {
         }
         // It only proposes, so it need not be the ray through the middle to the last digit.
         let through = CastRay { origin: point - ray.direction * t, t_max: t, ..*ray };
-        let mut is_hidden = false;
-        self.walk(&through, |candidate| {
+        let (mut is_hidden, mut asked) = (false, 0);
+        self.walk_places(&through, |candidate| {
+            take_note_of_a_look();
+            asked += 1;
             let shown = screen.shown(candidate.id, candidate.corners, sides);
             let first = shown.filter(|first| screen.is_hidden_by(first, middle));
             is_hidden = first.is_some_and(|first| {
@@ -222,7 +228,7 @@ impl ExactCast<'_> {
                     .into_iter()
                     .all(|end| self.hides_way(screen, first, Way { from: middle, to: end }, sides))
             });
-            if is_hidden { Next::Stop } else { Next::On }
+            if is_hidden || asked == MAX_ASKED { Next::Stop } else { Next::On }
         });
         is_hidden
     }

@@ -14,6 +14,7 @@ use glam::DVec3;
 use raypencil_scene::{FaceId, Side, Triangles};
 
 use super::super::triangle::Triangle;
+use super::copies::copies;
 use crate::trees::bvh::Bvh;
 
 /// No face continues an edge, or it cannot be told which.
@@ -25,6 +26,10 @@ pub(in crate::cast) struct Seams {
     faces: Vec<FaceSeams>,
     /// For each node of the hierarchy.
     cones: Vec<Cone>,
+    /// Whether each face is a copy of an earlier one; empty if none is.
+    copies: Vec<bool>,
+    /// The hierarchy of the others, if some are.
+    without_copies: Option<Bvh<Triangle>>,
 }
 
 /// A face among the others.
@@ -57,7 +62,13 @@ const LEAST_WIDTH: f64 = 1.0 / (1u64 << 24) as f64;
 impl Seams {
     pub(in crate::cast) fn of(mesh: &Triangles, bvh: &Bvh<Triangle>) -> Self {
         let vertices = merged_vertices(mesh);
-        let mates = mates(mesh, &vertices);
+        let copies = copies(mesh.faces(), &vertices);
+        let is_copy = |face: FaceId| copies.get(face.0 as usize) == Some(&true);
+        let mates = mates(mesh, &vertices, is_copy);
+        let without_copies = (!copies.is_empty() && !bvh.is_empty()).then(|| {
+            Bvh::build(bvh.faces_below(0).iter().filter(|face| !is_copy(face.id)).copied().collect())
+        });
+        let bvh = without_copies.as_ref().unwrap_or(bvh);
         let normals: Vec<Option<DVec3>> =
             (0..mesh.faces().len() as u32).map(|face| unit_normal(mesh.corners(FaceId(face)))).collect();
         let cone = |node: u32| {
@@ -82,7 +93,18 @@ impl Seams {
             let normal = normal.map_or([f32::NAN; 3], |normal| normal.to_array().map(|part| part as f32));
             FaceSeams { mates, normal }
         });
-        Self { faces: faces.collect(), cones }
+        let faces = faces.collect();
+        Self { faces, cones, copies, without_copies }
+    }
+
+    /// Whether a face lies in the place of an earlier one.
+    pub(super) fn is_copy(&self, face: FaceId) -> bool {
+        self.copies.get(face.0 as usize) == Some(&true)
+    }
+
+    /// The hierarchy of the faces that are no copies, if some are.
+    pub(in crate::cast) fn without_copies(&self) -> Option<&Bvh<Triangle>> {
+        self.without_copies.as_ref()
     }
 
     /// The only other face at the edge from corner k of a face, if there is just one and it runs the other way.
@@ -129,10 +151,13 @@ fn merged_vertices(mesh: &Triangles) -> Vec<u32> {
     (0..mesh.vertices().len() as u32).map(|index| *first.entry(key(index)).or_insert(index)).collect()
 }
 
-fn mates(mesh: &Triangles, vertices: &[u32]) -> Vec<[u32; 3]> {
+/// The faces behind the edges of each. Those that are left out have none, and are behind none.
+fn mates(mesh: &Triangles, vertices: &[u32], is_left_out: impl Fn(FaceId) -> bool) -> Vec<[u32; 3]> {
     // Each edge by its two ends, the smaller first; then whether it runs from there; then face and corner.
     let mut edges: Vec<([u32; 2], bool, u32, u32)> = Vec::with_capacity(3 * mesh.faces().len());
-    for (index, face) in mesh.faces().iter().enumerate() {
+    for (index, face) in
+        mesh.faces().iter().enumerate().filter(|(index, _)| !is_left_out(FaceId(*index as u32)))
+    {
         for k in 0..3 {
             let [from, to] = [face[k], face[(k + 1) % 3]].map(|vertex| vertices[vertex as usize]);
             edges.push(([from.min(to), from.max(to)], from < to, index as u32, k as u32));

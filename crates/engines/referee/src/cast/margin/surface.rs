@@ -24,7 +24,7 @@
 //! face covers is a jump, and no other can be nearer.
 
 use std::cmp::{Ordering, Reverse};
-use std::collections::BinaryHeap;
+use std::collections::{BinaryHeap, HashSet};
 use std::rc::Rc;
 
 use glam::DVec3;
@@ -39,7 +39,7 @@ use super::nearby::Nearby;
 use super::screen::Screen;
 use super::segment::{Border, Cover, Piece, Place, Segment, corner_segment, cover, covered_up_to, met_at};
 use super::view::View;
-use super::{ExactCast, within};
+use super::{ExactCast, take_note_of_a_look, within};
 use crate::margins::margin::Margin;
 use crate::numbers::number::{Dyadic, Number};
 use crate::trees::bvh::RayBundle;
@@ -94,6 +94,9 @@ impl Tasks {
 /// A relative distance within which other faces are looked up around a place: far above the rounding of the place.
 const PLACE_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
+/// Most faces that wait for an exact look. Often none is needed, for another face certainly hides the piece.
+const MAX_DOUBTFUL: usize = 16;
+
 impl ExactCast<'_> {
     /// The margin of the surface of a ray that hits. No jump is nearer than `from`, the margin of the faces.
     ///
@@ -107,8 +110,14 @@ impl ExactCast<'_> {
     ) -> Margin {
         let cap = self.tree.diagonal;
         let [first, last] = frame.ranges();
-        let mut nearby = Nearby::new(&self.tree.bvh);
+        let mut nearby = Nearby::new(self.places());
         let mut tasks = Tasks::default();
+        // Directed edges by their ends, and corners as edges from a vertex to itself. What becomes of one depends on the ends alone and on
+        // the faces around: of many faces that share it the first decides, which has the same size as the others and comes before them.
+        let mut decided = HashSet::new();
+        let bits = |face: FaceId, side: Side, k: usize| {
+            self.mesh.corners(face)[corner_of(side, k)].to_array().map(f64::to_bits)
+        };
         loop {
             let size = nearby.size().min(tasks.size());
             if size >= cap {
@@ -140,6 +149,8 @@ impl ExactCast<'_> {
                     };
                     tasks.push_at(place, least.max(size), Task::Segment(face, side, border, place));
                 }
+                Some(Task::Segment(face, side, Border::Edge(k), _))
+                    if !decided.insert([k, k + 1].map(|k| bits(face, side, k))) => {}
                 Some(Task::Segment(face, side, border, place)) => {
                     if let (Some(screen), Border::Edge(k)) = (screen, border)
                         && self.is_edge_hidden(screen, (face, side, k), view.sides())
@@ -157,6 +168,7 @@ impl ExactCast<'_> {
                         }
                     }
                 }
+                Some(Task::Corner(face, side, k)) if !decided.insert([bits(face, side, k); 2]) => {}
                 Some(Task::Corner(face, side, k)) => {
                     let point = corner_segment(&self.flat(frame.exact(), face, side), k);
                     if self.stands_alone(frame, &point, view) {
@@ -251,11 +263,36 @@ impl ExactCast<'_> {
                 .hidden_by_surface(WalkedFace { face, flat }, &fast, numbers, |face, k| behind(face, side, k))
         };
         let is_farther = |one: f64, other: f64| if piece.is_forward() { one > other } else { one < other };
+        let end_of = |face, side, covers| {
+            covered_up_to(piece, segment, &self.flat(frame.exact(), face, side), frame.exact(), covers)
+        };
+        // Up to where a face covers the piece, without rounding.
+        let covered_by = |(face, side): (FaceId, Side)| {
+            take_note_of_a_look();
+            let exact = self.flat(frame.exact(), face, side);
+            match cover(piece, segment, &exact, frame.exact())? {
+                Cover::Before => Some(match walk(face, side, self.flat(numbers, face, side)) {
+                    Hidden::Wholly => piece.far.clone(),
+                    Hidden::UpToTheEndOf(end, _) => end_of(end, side, Cover::Before),
+                }),
+                Cover::GoesOn => Some(end_of(face, side, Cover::GoesOn)),
+                Cover::None => None,
+            }
+        };
+        // The farther from the near end the better: nearer to the far end.
+        let order = piece.far.compare(&piece.near);
+        let farthest = |until: Option<Place>, doubtful: &mut Vec<(FaceId, Side)>| {
+            let ends = until.into_iter().chain(doubtful.drain(..).filter_map(covered_by));
+            ends.reduce(|kept, end| if end.compare(&kept) == order { end } else { kept })
+        };
         // The face up to whose end the piece is hidden, and where it is entered: the farther the better.
         let mut last: Option<(f64, FaceId, Side)> = None;
-        let mut doubtful: Vec<(&Triangle, Side)> = Vec::new();
+        // Faces of which intervals do not tell what they cover, and up to where those cover that were looked at exactly.
+        let mut doubtful: Vec<(FaceId, Side)> = Vec::new();
+        let mut until: Option<Place> = None;
         let mut is_hidden = false;
-        self.tree.bvh.visit(&bundle, |face| {
+        self.places().visit(&bundle, |face| {
+            take_note_of_a_look();
             if is_hidden || !frame.may_show(&face.corners, at, bundle.start_radius) {
                 return bundle.max_range;
             }
@@ -271,37 +308,22 @@ impl ExactCast<'_> {
                         }
                     }
                 },
-                Some(Cover::GoesOn) | None => doubtful.push((face, side)),
+                Some(Cover::GoesOn) | None => doubtful.push((face.id, side)),
+            }
+            // Where thousands lie on one another, one of the first mostly covers all of the piece.
+            if doubtful.len() == MAX_DOUBTFUL {
+                until = farthest(until.take(), &mut doubtful);
+                is_hidden |= until.as_ref().is_some_and(|until| until.compare(&piece.far) == Ordering::Equal);
             }
             if is_hidden { f64::NEG_INFINITY } else { bundle.max_range }
         });
         if is_hidden {
             return Some(piece.far.clone());
         }
-        let end_of = |face, side, covers| {
-            covered_up_to(piece, segment, &self.flat(frame.exact(), face, side), frame.exact(), covers)
-        };
-        if let Some((_, face, side)) = last {
-            return Some(end_of(face, side, Cover::Before));
+        match last {
+            Some((_, face, side)) => Some(end_of(face, side, Cover::Before)),
+            None => farthest(until, &mut doubtful),
         }
-        let mut until: Option<Place> = None;
-        for (face, side) in doubtful {
-            let exact = self.flat(frame.exact(), face.id, side);
-            let end = match cover(piece, segment, &exact, frame.exact()) {
-                Some(Cover::Before) => match walk(face.id, side, self.flat(numbers, face.id, side)) {
-                    Hidden::Wholly => return Some(piece.far.clone()),
-                    Hidden::UpToTheEndOf(end, _) => end_of(end, side, Cover::Before),
-                },
-                Some(Cover::GoesOn) => end_of(face.id, side, Cover::GoesOn),
-                Some(Cover::None) | None => continue,
-            };
-            // The farther from the near end the better: nearer to the far end.
-            let order = piece.far.compare(&piece.near);
-            if until.as_ref().is_none_or(|kept| end.compare(kept) == order) {
-                until = Some(end);
-            }
-        }
-        until
     }
 
     /// Whether a corner, which is all that is left of its face, is a jump.
@@ -309,7 +331,8 @@ impl ExactCast<'_> {
         let numbers = frame.exact();
         let bundle = self.bundle_at(frame, point.point(&Place::start()));
         let mut stands_alone = true;
-        self.tree.bvh.visit(&bundle, |face| {
+        self.places().visit(&bundle, |face| {
+            take_note_of_a_look();
             if let Some(side) = view.side_hit(face) {
                 let flat = self.flat(numbers, face.id, side);
                 stands_alone &= match met_at(point, &flat, numbers) {
