@@ -403,6 +403,14 @@ fn read_answers<'s>(
         let channels = read_listed_channels(pack, paths, &Limits::default())?;
         Ok(Recorded::of_channels(manifest.scene.name.clone(), pack, scene, Precision::F64, &channels)?)
     };
+    if !is_known && !answers().any(|file| file.kind == Some(FileType::Exr)) {
+        return Err(CheckError::Answers {
+            pack: pack.to_path_buf(),
+            found: format!("no EXR file with answers that {MANIFEST_NAME} lists"),
+            expected: "every quantity in an EXR file of its sensor, beside the arrays in double precision"
+                .into(),
+        });
+    }
     // Each answer stands twice, as NPY and rounded as EXR. Where both are there they were compared when they were read.
     let singles: BTreeSet<(SensorId, Item)> = match is_known {
         true => BTreeSet::new(),

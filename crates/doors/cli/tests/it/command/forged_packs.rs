@@ -115,6 +115,13 @@ fn a_manifest_that_says_what_is_not_so_is_refused() {
         of["files"].as_array_mut().unwrap().retain(|file| file["path"] != "camera.exr");
     };
     refused(&no_maps, &["of camera in an EXR file that manifest.json lists; expected"]);
+    let no_map_at_all = |of: &mut serde_json::Value| {
+        of["files"]
+            .as_array_mut()
+            .unwrap()
+            .retain(|file| !file["path"].as_str().is_some_and(|path| path.ends_with(".exr")));
+    };
+    refused(&no_map_at_all, &["no EXR file with answers that manifest.json lists; expected"]);
     // It calls itself what is published.
     let is_hard = |of: &mut serde_json::Value| {
         of["scene"]["name"] = "hard".into();
