@@ -113,11 +113,10 @@ impl PackedRays {
 /// The rays of a file, and its digest: those of each set of a `.toml`, else an array.
 fn packed(rays: &Path) -> Result<(Vec<Packed>, String), Trouble> {
     if !rays.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
+        // Rays that are too many are refused before gigabytes of them are read for a digest.
+        let array = read_rays(rays)?;
         let (_, digest) = file_sha256_hex(rays).map_err(|error| FileError::io(rays, "read", error))?;
-        return Ok((
-            vec![Packed { name: None, rays: PackedRays::Array(read_rays(rays)?), sides: Sides::Both }],
-            digest,
-        ));
+        return Ok((vec![Packed { name: None, rays: PackedRays::Array(array), sides: Sides::Both }], digest));
     }
     let LoadedRaySets { sets, sha256 } = read_ray_sets(rays)?;
     let is_one = sets.len() == 1;

@@ -143,3 +143,20 @@ fn results_of_something_else_are_not_replaced_unasked() {
     refused("sweep b.toml --do render -o s", "a sweep of a.toml");
     assert_trouble(&run("sweep a.toml --do render -o c"), &["it has results of ", "/p;"]);
 }
+
+/// A file of more rays than there may be is refused by its size. It has no bytes on the disk, but to read it for a digest takes seconds.
+#[cfg(target_os = "linux")]
+#[test]
+fn rays_that_are_too_many_are_refused_before_they_are_read() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("one.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let rays = fs::File::create(folder.path().join("rays.npy")).unwrap();
+    rays.set_len(16 << 30).unwrap();
+    let line = format!(
+        "ulimit -t 3; exec {} pack one.obj --rays rays.npy -o out --max-memory 256MB",
+        env!("CARGO_BIN_EXE_raypencil")
+    );
+    let output =
+        std::process::Command::new("sh").args(["-c", &line]).current_dir(folder.path()).output().unwrap();
+    assert_trouble(&output, &["rays.npy: cannot read: 17179869184 bytes", "256000000"]);
+}
