@@ -1,8 +1,9 @@
 //! Parsers of option values. Their messages say what was expected.
 
+use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, StringValueParser, TypedValueParser};
 use raypencil::campaign::{MAX_SHARDS, PartName, Shard};
 use raypencil::cast::{BagFields, CloudFrame, rays_from_bytes};
 use raypencil::drive::RecordContents;
@@ -52,6 +53,11 @@ pub(crate) fn up_axis() -> impl TypedValueParser<Value = UpAxis> {
         (UpAxis::Y.word(), "(x, y, z) of the file is (x, -z, y) of the terrain", UpAxis::Y),
         (UpAxis::Z.word(), "The axes of the file are those of the terrain", UpAxis::Z),
     ])
+}
+
+/// A mesh or another ground. Its name stands in reports, in records and in commands to be copied, so it is text, as that of a scene.
+pub(crate) fn named_file() -> impl TypedValueParser<Value = PathBuf> {
+    StringValueParser::new().map(PathBuf::from)
 }
 
 /// `--bag`.

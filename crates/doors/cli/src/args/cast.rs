@@ -7,7 +7,7 @@ use raypencil::CastRay;
 use raypencil::cast::BagFields;
 use raypencil::io::{Setting, UpAxis};
 
-use crate::parsers::{bag_fields, number, ray, setting, up_axis};
+use crate::parsers::{bag_fields, named_file, number, ray, setting, up_axis};
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
@@ -22,7 +22,7 @@ use crate::parsers::{bag_fields, number, ray, setting, up_axis};
 pub(crate) struct Cast {
     /// A mesh: .glb, .gltf, .stl, .obj or .ply, or a folder with vertices.npy and faces.npy. Or a scene file (.toml) with
     /// tables [[rays]]: its terrain, and its own sets of rays unless others are given; its camera and beams are left out.
-    #[arg(value_name = "MESH")]
+    #[arg(value_name = "MESH", value_parser = named_file())]
     pub(crate) mesh: PathBuf,
 
     /// Rays: NPY of shape (..., 6), (..., 8) or (..., 9), or CSV: origin, direction, and if wanted t_min, t_max, then t_blind, a

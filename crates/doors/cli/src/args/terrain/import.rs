@@ -6,7 +6,7 @@ use clap::Args;
 use raypencil::io::{DEFAULT_REFLECTIVITY, UpAxis};
 
 use super::dem::DemArgs;
-use crate::parsers::{number, numbers, up_axis};
+use crate::parsers::{named_file, number, numbers, up_axis};
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
@@ -18,7 +18,7 @@ use crate::parsers::{number, numbers, up_axis};
   raypencil terrain import dem.tif --z-unit ftUS --nodata -9999 -o out/ground.glb")]
 pub(crate) struct TerrainImport {
     /// An elevation model: a GeoTIFF with one band. Or a mesh: .stl, .obj, .ply, .glb or .gltf.
-    #[arg(value_name = "FILE")]
+    #[arg(value_name = "FILE", value_parser = named_file())]
     pub(crate) file: PathBuf,
 
     /// Axis of a mesh that points up. Without it: y for glTF, as its specification says, z for STL, OBJ and PLY.

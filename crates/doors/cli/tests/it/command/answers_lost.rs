@@ -103,6 +103,15 @@ fn an_argument_that_is_not_utf_8_is_named() {
     let folder = folder();
     let name = std::ffi::OsStr::from_bytes(b"sc\xffne.toml");
     std::fs::write(folder.path().join(name), SMALL).unwrap();
-    let output = command(folder.path(), &["validate"]).arg(Path::new(name)).output().unwrap();
-    assert_trouble(&output, &["sc\u{fffd}ne.toml", "not UTF-8"]);
+    // One rule for all commands that take a scene or a mesh.
+    for words in [
+        &["validate"][..],
+        &["pack", "-o", "out", "--rays", "rays.csv"],
+        &["cast", "--ray", "0,0,3,0,0,-1"],
+        &["terrain", "import", "-o", "out.glb"],
+        &["terrain", "inspect"],
+    ] {
+        let output = command(folder.path(), words).arg(Path::new(name)).output().unwrap();
+        assert_trouble(&output, &["sc\u{fffd}ne.toml", "not UTF-8", "another name"]);
+    }
 }
