@@ -7,6 +7,7 @@ use raypencil_scene::{FaceId, Side, Triangles};
 use super::super::query_ray::QueryRay;
 use super::super::triangle::Triangle;
 use super::flat::{Linear, corner_of};
+use super::looks::LOOKS;
 use super::region::{LazyLinear, least_size};
 use super::*;
 use crate::numbers::number::{Dyadic, Interval, Number};

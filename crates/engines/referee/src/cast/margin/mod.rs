@@ -7,6 +7,7 @@
 //! frame      the ray's own frame, in which faces are triangles in a plane, and t is linear on each
 //! flat       a face in it, and its conditions as linear functions of the displacement
 //! region     the least displacement at which some linear conditions hold
+//! looks      counts faces that are looked at, for the tests
 //! copies     faces that lie in the place of another: of these one counts
 //! seams      which edges two faces continue, and in which parts of the mesh there are only such
 //! view       which sides of faces the ray sees
@@ -31,6 +32,7 @@ mod faces;
 mod flat;
 mod frame;
 mod hidden;
+mod looks;
 mod nearby;
 mod region;
 mod screen;
@@ -64,19 +66,6 @@ fn within([lo, hi]: [f64; 2], witness: Option<[f64; 2]>, least: f64, cap: f64) -
     }
     let witness = witness.map(Displacement::from).filter(|by| by.max_norm() <= (hi * 1.01).max(hi + least));
     Margin { lo, hi: witness.as_ref().map_or(hi, Displacement::max_norm).max(hi).min(cap), witness }
-}
-
-/// Counts a face that is looked at for a place of a border, for the tests.
-#[inline]
-fn take_note_of_a_look() {
-    #[cfg(test)]
-    LOOKS.with(|looks| looks.set(looks.get() + 1));
-}
-
-#[cfg(test)]
-thread_local! {
-    /// Faces that this thread looked at for places of borders.
-    static LOOKS: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
 }
 
 impl ExactCast<'_> {

@@ -24,9 +24,10 @@ use glam::DVec3;
 use raypencil_scene::{CastRay, FaceId, Side, Sides};
 
 use super::super::quads::Next;
+use super::ExactCast;
 use super::flat::corner_of;
 use super::frame::Frame;
-use super::{ExactCast, take_note_of_a_look};
+use super::looks::take_note_of_a_look;
 
 /// Below it squares come near to the end of f64.
 const LEAST_SLACK: f64 = 1e-140;
