@@ -99,7 +99,7 @@ pub fn run_with(arguments: impl IntoIterator<Item = OsString>, registry: &Regist
             let asked = matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
             match words_not_text.as_slice() {
                 [first, ..] if error.kind() == ErrorKind::InvalidUtf8 => console::complain(&format!(
-                    "Error: {}: the argument is not UTF-8; expected a path or a value that is: give a file another name, or a link\n",
+                    "Error: {}: the argument is not UTF-8; expected a path or a value that is: give the file another name, or make a link that has one\n",
                     first.to_string_lossy()
                 )),
                 _ => trouble::print_usage(&error, has_codes),
