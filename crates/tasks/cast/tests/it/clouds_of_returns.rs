@@ -35,7 +35,7 @@ enum Fields {
 
 /// The head of 16 channels with beams of 30 mrad, 1 + 6 rays each: at 5 m a beam is 15 cm wide.
 fn set_of(mounting: &Mounting, keep: Keep) -> NamedRaySet {
-    let head = Spinning { steps: 60, azimuth_step_deg: -6.0, ..head() };
+    let head = Spinning { steps: 20, azimuth_step_deg: -18.0, ..head() };
     let cone = Cone { divergence_rad: 0.03, rings: 1 };
     let beams = cone.spread(&head.rays("rays").expect("rays"), "cone").expect("a cone");
     let beams = PatternRays { returns: Some(Returns { keep, separation_m: 0.5 }), ..beams };
@@ -156,7 +156,7 @@ fn right_returns_pass_by_order_by_keys_and_by_numbers() {
         for mounting in [still(), bend()].into_iter().skip(usize::from(keep != Keep::UpTo(2))) {
             let trial = Trial::of_room(&mounting, keep);
             let mixed = trial.returns.footprints().iter().filter(|beam| beam.is_mixed()).count();
-            assert!(mixed >= 20, "{mixed} beams are mixed");
+            assert!(mixed >= 6, "{mixed} beams are mixed");
             for checked in trial.judge_all(&trial.right()) {
                 assert!(checked.passes(), "{keep:?}: {:?}", checked.why);
                 let told = trial.returns.told().iter().flatten().count();

@@ -249,8 +249,8 @@ fn two_channels_that_are_exchanged_are_told() {
             "if the points of channels 3 and 10, counted from 0",
         );
         let mut wrong = head();
-        let (a, b) = (wrong.channels[3].clone(), wrong.channels[10].clone());
-        wrong.channels[3] = Channel { firing_s: a.firing_s, ..b.clone() };
+        let (a, b) = (wrong.channels[3], wrong.channels[10]);
+        wrong.channels[3] = Channel { firing_s: a.firing_s, ..b };
         wrong.channels[10] = Channel { firing_s: b.firing_s, ..a };
         let of_angles = points(&set_of(&wrong, &mounting), SENSOR);
         let of_angles: Vec<Point> =

@@ -5,9 +5,7 @@ use std::sync::Arc;
 use raypencil_diagnosis::Mistake;
 use raypencil_judge::{Quantity, Recorded};
 use raypencil_referee::ExactRenderer;
-use raypencil_scene::{
-    Camera, FaceId, Maybe, Mounted, Precision, Renderer, Request, Scene, SensorId, SensorMap,
-};
+use raypencil_scene::{Camera, Maybe, Mounted, Precision, Renderer, Request, Scene, SensorId, SensorMap};
 
 use super::candidates::*;
 use super::one::as_single;

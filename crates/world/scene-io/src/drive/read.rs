@@ -315,7 +315,7 @@ impl Source<'_> {
     /// A pixel is bright above the threshold: the camera's largest number must be.
     fn threshold_is_reached(&self, keys: &DriveKeys, drive: &DriveSetup) -> Result<(), SceneIoError> {
         let Some(threshold) = &keys.threshold_dn else { return Ok(()) };
-        let of_converter = 2.0_f64.powi(drive.sensor.bits as i32) - 1.0;
+        let of_converter = ((1_u64 << drive.sensor.bits) - 1) as f64;
         let (largest, less) = if drive.subtract_unlit {
             (of_converter - drive.sensor.bias, ", less the bias")
         } else {

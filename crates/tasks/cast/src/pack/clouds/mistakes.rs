@@ -12,7 +12,7 @@ use super::places::{of_exchanged_channels, of_order, of_returns};
 use super::read::{CloudCase, pose_of};
 use super::turn::{Turn, azimuth_deg, turned, wrapped_deg};
 use crate::cloud::CloudFrame;
-use crate::pack::mistakes::{Extra, OfCloud, Trial};
+use crate::pack::mistakes::{OfCloud, Trial};
 use crate::pack::scan::{Scan, moved};
 
 /// Rays from which a number is estimated, at most.
