@@ -174,7 +174,7 @@ fn right_returns_pass_by_order_by_keys_and_by_numbers() {
     assert!(checked.passes(), "{:?}", checked.why);
     let text = checked.document().screen();
     assert!(
-        text.contains("A ray is the leading ray of a return of 960 beams, up to 2 each; without a return"),
+        text.contains("A ray is the leading ray of a return of 320 beams, up to 2 each; without a return"),
         "{text}"
     );
     let cloud = checked.cloud.expect("a cloud");
