@@ -113,11 +113,14 @@ class RaySet:
     fronts_only: bool
 
     def beam_returns(self, answers: CastResult) -> dict[str, NDArray[Any]]:
-        """The returns of the beams, from the answers to their rays: ``cast(scene, ray_set.rays)``.
+        """The returns of the beams, from the answers to their rays.
 
-        Arrays by the names of the command's files without ``return.``: of beams (...) ``count``, ``mixed``, ``share_missed``; of
+        Arrays by the names of the command's files without ``return.``: of beams (...) ``count``, ``mixed`` (boolean), ``share_missed``; of
         returns, (..., places) in the order of their ranges, ``number`` (0: none), ``ray``, ``range`` and ``mean_range`` (metres),
-        ``strength``, ``share``, ``share_other``; of rays ``of_ray``. They are the same bits as those of the files.
+        ``strength``, ``share``, ``share_other``; of rays ``of_ray``. They hold what the files hold, to the last bit.
+
+        Args:
+            answers: ``cast(scene, ray_set.rays)``.
 
         Raises:
             RaypencilError: the set asks for no returns, or the answers are those of other rays.
