@@ -121,9 +121,17 @@ def test_a_frame_has_units_and_is_read_only() -> None:
     assert (frame.map.source[row, column] == 3).all() and np.abs(frame.map.elevation[row, column] - z).max() < 0.2
 
 
+def _name_of(task: str) -> str:
+    try:
+        return Path(f"/proc/self/task/{task}/comm").read_text()
+    except (FileNotFoundError, ProcessLookupError):
+        # It has ended since it was listed.
+        return ""
+
+
 def raypencil_threads() -> int:
     # The threads of a drive; those of the pool are named after who called first.
-    return sum("raypencil " in Path(f"/proc/self/task/{task}/comm").read_text() for task in _tasks())
+    return sum("raypencil " in _name_of(task) for task in _tasks())
 
 
 def _tasks() -> list[str]:
