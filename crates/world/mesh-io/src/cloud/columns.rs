@@ -53,8 +53,10 @@ impl CloudColumn {
         }
         // A number that rounds to this one lies within half the gap above it: the gap below is never larger.
         let of_single = || {
-            let size = (value as f32).abs();
-            (f64::from(size.next_up()) - f64::from(size)) / 2.0
+            // The gap above the largest number is that below it.
+            let size = (value as f32).abs().min(f32::MAX);
+            let (from, to) = if size < f32::MAX { (size, size.next_up()) } else { (size.next_down(), size) };
+            (f64::from(to) - f64::from(from)) / 2.0
         };
         match &self.storage {
             CloudStorage::Single => of_single(),
@@ -104,6 +106,14 @@ pub(super) fn check_names(names: &[String]) -> Result<(), Fault> {
         }
     }
     Ok(())
+}
+
+/// A decimal number, or `nan` or `inf`; `None` for what is no number, and for digits beyond the range of the type: no program
+/// that has the type printed them.
+pub(crate) fn decimal(word: &str, of_single: bool) -> Option<f64> {
+    let number: f64 = word.parse().ok()?;
+    let is_held = if of_single { (number as f32).is_finite() } else { number.is_finite() };
+    (is_held || !word.contains(|digit: char| digit.is_ascii_digit())).then_some(number)
 }
 
 /// Digits after the point of a decimal number as it is printed, less its exponent.

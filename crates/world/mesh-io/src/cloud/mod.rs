@@ -8,7 +8,7 @@ mod packed;
 mod pcd;
 mod read;
 
-pub(crate) use columns::decimals;
 pub use columns::{Cloud, CloudColumn, CloudStorage};
+pub(crate) use columns::{decimal, decimals};
 pub use packed::{PackedField, PackedKind, PackedPoints};
 pub use read::{claimed_points, cloud_from_bytes, is_cloud_file, read_cloud};

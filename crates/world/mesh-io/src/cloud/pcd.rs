@@ -2,7 +2,7 @@
 
 use raypencil_files::Fault;
 
-use super::columns::{Cloud, CloudColumn, CloudStorage, check_names, decimals};
+use super::columns::{Cloud, CloudColumn, CloudStorage, check_names, decimal, decimals};
 use super::lzf;
 use super::packed::{PackedField, PackedKind, PackedPoints, check_fields};
 
@@ -266,9 +266,9 @@ fn of_text(
             if keeps(field)
                 && let Some((column, of_text)) = kept.next()
             {
-                let number = words[at].parse::<f64>();
-                let Ok(number) = number else {
-                    return Err(Fault::new(place(), format!("{:?}", words[at]), "a decimal number, or nan"));
+                let Some(number) = decimal(words[at], column.storage == CloudStorage::Single) else {
+                    let expected = "a decimal number, or nan, that its type holds";
+                    return Err(Fault::new(place(), format!("{:?}", words[at]), expected));
                 };
                 column.values.push(number);
                 of_text.push(decimals(words[at]));

@@ -173,3 +173,30 @@ fn no_cut_and_no_changed_byte_breaks_the_reader() {
         }
     }
 }
+
+#[test]
+fn decimal_numbers_beyond_their_type_are_refused() {
+    let pcd = |number: &str| {
+        let head =
+            "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 8\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii";
+        read(format!("{head}\n0 {number} 1e200\n").as_bytes())
+    };
+    let ply = |number: &str| {
+        let head =
+            "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty double z";
+        read(format!("{head}\nend_header\n0 {number} 1e200\n").as_bytes())
+    };
+    for of in [&pcd as &dyn Fn(&str) -> Result<Cloud, String>, &ply] {
+        for number in ["3.5e38", "-3.5e38", "1e999"] {
+            let message = of(number).expect_err("f32 ends at 3.4e38");
+            assert!(message.contains(number) && message.contains("that its type holds"), "{message}");
+        }
+        // The largest number of f32 has half the gap below it, 2^103, beside what its decimals leave open.
+        let cloud = of("340282346638528859811704183484516925440.0").expect("the largest of f32");
+        let error = cloud.column("y").expect("a field").error(0);
+        assert_eq!(error, 2.0_f64.powi(103) + 0.05);
+        for endless in ["inf", "-inf", "nan"] {
+            assert!(!of(endless).expect("a word for it").column("y").expect("a field").values[0].is_finite());
+        }
+    }
+}

@@ -2,7 +2,7 @@
 
 use raypencil_files::Fault;
 
-use crate::cloud::decimals;
+use crate::cloud::{decimal, decimals};
 use crate::triangles::ply::header::{Element, Number};
 use crate::triangles::text::{self, Lines, quoted, words};
 
@@ -191,9 +191,11 @@ impl Numbers for Text<'_> {
         }
     }
 
-    fn real(&mut self, _: Number) -> Result<f64, Fault> {
+    fn real(&mut self, number: Number) -> Result<f64, Fault> {
         let word = self.word();
-        text::number(word, || self.place())
+        let text = word.and_then(|word| std::str::from_utf8(word).ok());
+        let real = text.and_then(|text| decimal(text, matches!(number, Number::Real(4))));
+        real.ok_or_else(|| Fault::new(self.place(), quoted(word), "a decimal number that its type holds"))
     }
 
     fn decimals(&self) -> Option<i32> {
