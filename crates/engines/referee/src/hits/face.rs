@@ -200,8 +200,17 @@ impl Face {
 
     /// Whether this face lies in the plane of `other`, exactly, whichever way either faces.
     pub(crate) fn is_in_plane_of(&self, other: &Self) -> bool {
-        let (n, a) = (other.normal::<Dyadic>(), other.corner::<Dyadic>(0));
-        (0..3).all(|k| n.dot(&self.corner(k).sub(&a)).sign() == Some(Ordering::Equal))
+        // Nearly all faces that are asked for are certainly not: intervals prove it, and exact numbers cost far more.
+        let is_certainly_off =
+            |side: &Option<Ordering>| matches!(side, Some(Ordering::Less | Ordering::Greater));
+        !self.sides_of_plane::<Interval>(other).iter().any(is_certainly_off)
+            && self.sides_of_plane::<Dyadic>(other) == [Some(Ordering::Equal); 3]
+    }
+
+    /// On which side of the plane of `other` each corner lies, where the arithmetic is certain of it.
+    fn sides_of_plane<T: Number>(&self, other: &Self) -> [Option<Ordering>; 3] {
+        let (normal, corner) = (other.normal::<T>(), other.corner::<T>(0));
+        [0, 1, 2].map(|k| normal.dot(&self.corner(k).sub(&corner)).sign())
     }
 
     /// The range at which the ray meets the face's plane, metres, to f64 rounding.

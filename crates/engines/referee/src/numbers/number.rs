@@ -226,11 +226,16 @@ impl Dyadic {
     fn sum(&self, other: &Self, is_difference: bool) -> Self {
         let exponent = self.exponent.min(other.exponent);
         let shifts = [self, other].map(|number| (number.exponent - exponent) as usize);
-        if let (Mantissa::Short(a), Mantissa::Short(b)) = (&self.mantissa, &other.mantissa)
-            && let (Some(a), Some(b)) = (a.shifted(shifts[0]), b.shifted(shifts[1]))
-            && let Some(sum) = a.plus(&if is_difference { b.negated() } else { b })
-        {
-            return Self { mantissa: Mantissa::Short(sum), exponent };
+        if let (Mantissa::Short(a), Mantissa::Short(b)) = (&self.mantissa, &other.mantissa) {
+            // One of the two, or none, is to be shifted: the other is not copied.
+            let sum = match shifts {
+                [0, 0] => a.sum(b, is_difference),
+                [0, bits] => b.shifted(bits).and_then(|b| a.sum(&b, is_difference)),
+                [bits, _] => a.shifted(bits).and_then(|a| a.sum(b, is_difference)),
+            };
+            if let Some(sum) = sum {
+                return Self { mantissa: Mantissa::Short(sum), exponent };
+            }
         }
         self.long_sum(other, is_difference, exponent, shifts)
     }

@@ -93,13 +93,15 @@ impl ShortInteger {
         Some(Self { limbs, length, is_negative: self.is_negative })
     }
 
-    /// The sum; `None` if that is too long.
+    /// The sum, or the difference; `None` if that is too long.
     #[inline]
-    pub(crate) fn plus(&self, other: &Self) -> Option<Self> {
-        if self.is_negative != other.is_negative {
+    pub(crate) fn sum(&self, other: &Self, is_difference: bool) -> Option<Self> {
+        // A 0 may have either sign here: nothing is added, or taken away.
+        let other_is_negative = other.is_negative != is_difference;
+        if self.is_negative != other_is_negative {
             return Some(match self.compare_magnitude(other) {
-                Ordering::Less => other.less_magnitude(self),
-                _ => self.less_magnitude(other),
+                Ordering::Less => other.less_magnitude(self, other_is_negative),
+                _ => self.less_magnitude(other, self.is_negative),
             });
         }
         let mut limbs = [0; LIMBS];
@@ -151,8 +153,8 @@ impl ShortInteger {
         self.length.cmp(&other.length).then_with(by_limbs)
     }
 
-    /// |self| - |other| with the sign of self; |other| is not larger.
-    fn less_magnitude(&self, other: &Self) -> Self {
+    /// |self| - |other| with this sign; |other| is not larger.
+    fn less_magnitude(&self, other: &Self, is_negative: bool) -> Self {
         let mut limbs = [0; LIMBS];
         let mut borrow = false;
         for k in 0..self.length {
@@ -161,7 +163,7 @@ impl ShortInteger {
             limbs[k] = difference;
             borrow = one || two;
         }
-        Self::trimmed(limbs, self.length, self.is_negative)
+        Self::trimmed(limbs, self.length, is_negative)
     }
 }
 

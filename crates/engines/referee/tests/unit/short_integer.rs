@@ -34,9 +34,15 @@ fn fits(long: &IBig) -> bool {
 proptest! {
     #[test]
     fn sums_are_those_of_long_integers(a in integer(LIMBS), b in integer(LIMBS)) {
-        let expected = long(a) + long(b);
-        prop_assert_eq!(a.plus(&b).map(long), fits(&expected).then_some(expected));
-        prop_assert_eq!(a.plus(&a.negated()).map(long), Some(IBig::ZERO));
+        for (is_difference, expected) in [(false, long(a) + long(b)), (true, long(a) - long(b))] {
+            prop_assert_eq!(a.sum(&b, is_difference).map(long), fits(&expected).then_some(expected));
+        }
+        prop_assert_eq!(a.sum(&a.negated(), false).map(long), Some(IBig::ZERO));
+        prop_assert_eq!(a.sum(&a, true).map(long), Some(IBig::ZERO));
+        for is_difference in [false, true] {
+            prop_assert_eq!(a.sum(&ShortInteger::ZERO, is_difference).map(long), Some(long(a)));
+        }
+        prop_assert_eq!(ShortInteger::ZERO.sum(&a, true).map(long), Some(-long(a)));
         prop_assert_eq!(a.sign(), long(a).cmp(&IBig::ZERO));
     }
 

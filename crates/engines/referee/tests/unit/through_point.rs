@@ -58,13 +58,38 @@ fn through_a_point_by_hand() {
     // pixel (2, 2) is (2.5, 2.5).
     let aim = Aim { i: 2, j: 2, dx: 0.0, dy: 0.0 };
     let sensor = MountedSensor::camera(camera());
-    assert_eq!(sensor.displacement_through(aim, &exactly(2.0, 1.5, 7.0)), Some([0.5, -1.0]));
-    assert_eq!(sensor.displacement_through(aim, &exactly(2.0, 1.5, 3.0)), None);
+    assert_eq!(CellRay::of(&sensor, aim).displacement_through(&exactly(2.0, 1.5, 7.0)), Some([0.5, -1.0]));
+    assert_eq!(CellRay::of(&sensor, aim).displacement_through(&exactly(2.0, 1.5, 3.0)), None);
     // A beam of one cell at the same place, 2 w = 1/2 wide at g = 1 and T = 1/8 thick: x/z = 1/4 is half a cell, y =
     // -1/2 is 4 cells up.
     let beam = MountedSensor::beam(beam(camera().scene_from_sensor, 0.25, 0.125, 1.0));
     let aim = Aim { i: 0, j: 0, dx: 0.0, dy: 0.0 };
-    assert_eq!(beam.displacement_through(aim, &exactly(2.0, 1.5, 7.0)), Some([0.5, -4.0]));
+    assert_eq!(CellRay::of(&beam, aim).displacement_through(&exactly(2.0, 1.5, 7.0)), Some([0.5, -4.0]));
+}
+
+#[test]
+fn what_intervals_call_beyond_is_beyond_and_little_else_is_kept() {
+    let aim = Aim { i: 2, j: 2, dx: 0.0, dy: 0.0 };
+    let camera = MountedSensor::camera(camera());
+    let beam = MountedSensor::beam(beam(self::camera().scene_from_sensor, 0.25, 0.125, 1.0));
+    let thirds = |n: i32| f64::from(n) / 3.0;
+    let mut compared = 0;
+    for (sensor, x, y, z) in [&camera, &beam].into_iter().flat_map(|sensor| {
+        let numbers = (-4..5).flat_map(move |x| (-4..5).map(move |y| (x, y)));
+        numbers.map(move |(x, y)| (sensor, 2.0 + thirds(x), 1.5 + thirds(y), 7.1))
+    }) {
+        let at = CellRay::of(sensor, aim).displacement_through(&exactly(x, y, z)).expect("before the sensor");
+        let fast = CellRay::<Interval>::of(sensor, aim);
+        let is_beyond = |cells: f64| fast.is_certainly_beyond(&Vector::of(DVec3::new(x, y, z)), cells);
+        let [low, high] = [-1e-12, 1e-12].map(|part| max_norm(at) * (1.0 + part));
+        assert!(!is_beyond(max_norm(at)) && !is_beyond(high), "{at:?}");
+        assert!(low == 0.0 || is_beyond(low), "{at:?}");
+        compared += usize::from(low > 0.0);
+    }
+    assert!(compared > 150, "{compared}");
+    // In the plane through the sensor nothing is certain.
+    let in_plane = Vector::of(DVec3::new(2.0, 1.5, 3.0));
+    assert!(!CellRay::<Interval>::of(&camera, aim).is_certainly_beyond(&in_plane, 1e9));
 }
 
 /// A pencil of 5e-5 radians aimed at the tip of a thin triangle as exactly as f64 allows. It misses the tip by some
