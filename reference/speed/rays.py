@@ -12,7 +12,7 @@ import argparse
 import os
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -328,11 +328,90 @@ def page(given: argparse.Namespace, grounds: dict[str, int], times: Times, costs
                 for title, row in (("margins a second", "margins"), ("one ray, face and t", "one, face and t"), ("one ray, every value", "one, every value"))
             ],
         ),
+        "## Goals",
+        "The ranges are over all grounds and kinds of rays.",
+        goals(grounds, times, costs),
         "## A million rays beside Open3D",
         "[million.py](../../reference/speed/million.py) asks both on any mesh:",
         "```py\n" + (HERE / "million.py").read_text().strip() + "\n```",
     ]
     return "\n\n".join(parts) + "\n"
+
+
+def goals(grounds: dict[str, int], times: Times, costs: Times) -> str:
+    """Each goal beside what was measured, and of what is missed what it would take."""
+    names, columns = list(grounds), [f"{name}, {kind}" for name in grounds for kind in ("camera", "random")]
+
+    def known(values: Iterable[float | None]) -> list[float]:
+        return [value for value in values if value is not None]
+
+    def ratio(what: str, title: str) -> list[float]:
+        return known(times.ratio(f"{what}, {title}", f"{what}, Embree, robust", column) for column in columns)
+
+    def costing(rows: Iterable[str]) -> list[float]:
+        return known(costs.median(row, name) for row in rows for name in names)
+
+    def share(of: float, a: str, b: str, column: str) -> float:
+        return of * (times.median(a, column) or 0.0) / (times.median(b, column) or 1.0)
+
+    walk = [share(100, "any, exact", "first, exact", column) for column in columns]
+    trees = known(times.ratio("tree, exact", "tree, Embree, robust", name) for name in names)
+    embree = "times Embree, robust"
+    rows = [
+        (
+            "exact first hits: face and t",
+            1.5,
+            f"{{}} {embree}",
+            ratio("first", "exact"),
+            f"Asking for any hit alone takes {min(walk):.0f} to {max(walk):.0f} % of it: the walk through the boxes is more than all of Embree's time. Its nodes "
+            "have four boxes, and its tree halves the faces by their number. Nodes of eight boxes that one instruction of AVX2 asks, in a "
+            "tree that is cut by surface area, are what the tracer has. Then t: its double-doubles are formed for one ray after the "
+            "other, and could be for four in lanes.",
+        ),
+        (
+            "`tracer`: face and t",
+            1.0,
+            f"{{}} {embree}",
+            ratio("first", "`tracer`"),
+            "It has nodes of eight boxes, but asks the faces of a leaf one by one in f64, and rays one after the other: each waits for its memory. "
+            "Leaves of four faces that f32 refuses together, and eight rays that take turns, as the exact answers have them.",
+        ),
+        ("any hit, exact", 1.2, f"{{}} {embree}", ratio("any", "exact"), "The walk, as of first hits."),
+        (
+            "all hits, exact",
+            3.0,
+            "{} times first hits",
+            known(times.median("all, exact", name) for name in names),
+            "Rays that take turns: all hits are asked for one ray after the other.",
+        ),
+        (
+            "a correctly rounded value on top",
+            0.4,
+            "{} microseconds",
+            costing(("t", *VALUES)),
+            "Its double-doubles are formed for one ray after the other: four rays in lanes.",
+        ),
+        (
+            "margins a second, one thread",
+            10_000,
+            "{}",
+            costing(["margins"]),
+            "Each looks at the faces and edges around its ray, the nearest first, one at a time. Whole boxes of them would have to be let "
+            "go, and rays that are neighbours to share what they look at.",
+        ),
+        ("one ray, face and t, tree kept", 20, "{} microseconds", costing(["one, face and t"]), ""),
+        ("tree of the exact answers, one thread", 1.0, f"{{}} {embree}", trees, ""),
+    ]
+    cells, left = [], []
+    for what, goal, form, values, would_take in rows:
+        is_most = what.startswith("margins")
+        is_met = bool(values) and (min(values) >= goal if is_most else max(values) <= goal)
+        measured = " to ".join(f"{value:,.0f}" if value >= 100 else f"{value:.3g}" for value in (min(values), max(values))) if values else "-"
+        asked = f"{'at least' if is_most else 'at most'} {goal:,g}"
+        cells.append([what, asked, form.format(measured), "met" if is_met else "missed"])
+        if would_take and not is_met:
+            left.append(f"* **{what}**: {would_take}")
+    return "\n\n".join([table(["work", "goal", "measured", ""], cells), *(["What it would take; none of it was tried:", "\n".join(left)] if left else [])])
 
 
 def main() -> None:
