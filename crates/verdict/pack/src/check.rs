@@ -18,8 +18,9 @@ use raypencil_scene_io::{LoadedScene, SceneIoError, Subject, probe_command, quot
 use crate::bench::Edition;
 use crate::blind::blind_scene_of;
 use crate::check_report::BundleFindings;
-use crate::claims::{check_clauses, check_facts, check_sharpness};
+use crate::claims::{Found, check_facts, check_numbers};
 use crate::declarations::Declarations;
+use crate::labels::check_labels;
 use crate::manifest::{
     FileRole, FileType, MANIFEST_NAME, Manifest, ManifestFile, ManifestSharpness, PackKind, pack_fault,
 };
@@ -105,8 +106,12 @@ pub struct Verified {
     pub of: u64,
     /// Number of arrays of rays that are those of the scene, bit for bit.
     pub rays: u64,
-    /// Seed by which the answers were drawn, if they were.
+    /// Seed by which answers, counts or sizes were drawn, if any were.
     pub seed: Option<u64>,
+    /// Numbers of rays that decide a clause, and that are those of the scene.
+    pub clauses: Found,
+    /// Sizes of tolerances that are the smallest which the bench notices.
+    pub sizes: Found,
 }
 
 impl Checked {
@@ -222,7 +227,11 @@ pub fn check_pack_by(
             &format!("{sha256}, as it is published, or another version"),
         ));
     }
-    check_facts(&manifest, &scene).map_err(|fault| pack_fault(&manifest_file, fault))?;
+    let refused = |fault| CheckError::from(pack_fault(&manifest_file, fault));
+    check_facts(&manifest, &scene).map_err(refused)?;
+    if !is_known {
+        check_labels(&manifest).map_err(refused)?;
+    }
     // The candidate before the answers, so that its faults are reported soon.
     progress.stage("reading the candidate");
     let declared = declarations.clone().with_note(note(candidate, &scene)?.as_ref());
@@ -266,33 +275,31 @@ pub fn check_pack_by(
     let of =
         scene.sensors().filter_map(|sensor| scene.size(sensor)).map(|(w, h)| u64::from(w) * u64::from(h));
     let of: u64 = of.sum();
+    let is_drawn = matches!(share, Verification::Drawn { .. }) && !computed && !is_known && of > MAX_ALL;
     let seed = match share {
-        Verification::Drawn { seed } if !computed && !is_known && of > MAX_ALL => {
-            Some(seed.unwrap_or_else(seed_anew))
-        }
-        _ => None,
+        Verification::Drawn { seed: Some(seed) } => seed,
+        _ => seed_anew(),
     };
     // Answers that the referee has just given need not be asked again.
     let (found, answered) = match share {
         _ if computed => (None, of),
-        Verification::Drawn { .. } if is_known || seed.is_some() => {
+        Verification::Drawn { .. } if is_known || is_drawn => {
             // Sums of pixels, too.
             let (found, asked) = truth.first_uncertified(JudgeShare::Sample);
-            let drawn = seed.map_or(Vec::new(), |seed| drawn_places(&scene, DRAWN, seed));
+            let drawn = if is_drawn { drawn_places(&scene, DRAWN, seed) } else { Vec::new() };
             let of_drawn =
                 || drawn.iter().find_map(|(sensor, places)| truth.uncertified_among(*sensor, places));
-            (found.or_else(of_drawn), if seed.is_some() { DRAWN } else { asked })
+            (found.or_else(of_drawn), if is_drawn { DRAWN } else { asked })
         }
         _ => truth.first_uncertified(JudgeShare::All),
     };
     if let Some(found) = found {
         return Err(uncertified(found));
     }
-    if !is_known {
-        check_clauses(&manifest, &scene, share, progress)
-            .and_then(|()| check_sharpness(&manifest, &scene, share, progress))
-            .map_err(|fault| pack_fault(&manifest_file, fault))?;
-    }
+    let [clauses, sizes] = match is_known {
+        true => [Found::default(); 2],
+        false => check_numbers(&manifest, &scene, (share, seed), progress).map_err(refused)?,
+    };
     let check = check(&truth, &recorded, progress);
     if !computed {
         progress.stage("comparing the answers to wrong rays with the referee's");
@@ -300,7 +307,8 @@ pub fn check_pack_by(
             return Err(uncertified(found));
         }
     }
-    let verified = Verified { answers: answered, of, rays, seed };
+    let seed = (is_drawn || clauses.is_partial() || sizes.is_partial()).then_some(seed);
+    let verified = Verified { answers: answered, of, rays, seed, clauses, sizes };
     let diagnosis = if check.passes() {
         None
     } else {

@@ -68,6 +68,15 @@ pub(crate) fn tests(scene: &Scene) -> f64 {
 ///
 /// It takes time in proportion to rays times faces times faults: about 10 s for 10,000 rays of 4,000 faces on two cores.
 pub fn clause_rays(scene: &Scene, progress: &dyn Progress) -> Vec<ClauseRays> {
+    rays_of_clauses(scene, needed_clauses(scene.flux_model()), progress)
+}
+
+/// Counts the rays that decide each of some clauses.
+pub(crate) fn rays_of_clauses(
+    scene: &Scene,
+    clauses: impl Iterator<Item = Clause>,
+    progress: &dyn Progress,
+) -> Vec<ClauseRays> {
     let judge = Judge::new(scene, JudgeShare::All);
     let honest = Naive { fault: None }.render(scene, &Request::EVERYTHING);
     let count = |clause: Clause| {
@@ -79,7 +88,7 @@ pub fn clause_rays(scene: &Scene, progress: &dyn Progress) -> Vec<ClauseRays> {
         let rays = clause.faults().iter().map(of_fault).min().unwrap_or(0);
         ClauseRays { clause, rays }
     };
-    needed_clauses(scene.flux_model()).map(count).collect()
+    clauses.map(count).collect()
 }
 
 /// Number of rays on which `faulty` is wrong.

@@ -18,6 +18,7 @@
 //! note_values -> provenance          the candidate's note
 //! declarations -> check              what is declared about a candidate, also in its note; the check of a candidate
 //! published                          version and licence of a pack, and the packs that are published
+//! labels                             types, shapes, names and units of a pack's arrays and maps
 //! verification, claims               which answers are compared with the referee's; what else a manifest says of its scene
 //! input/                             a glTF file, the triangles that it must become, and the check of a loader
 //! check_report/                      a check in its one form, which every report prints
@@ -48,6 +49,7 @@ mod clauses;
 mod declarations;
 mod exr_map;
 mod input;
+mod labels;
 mod manifest;
 mod margins;
 mod note_values;
@@ -67,6 +69,7 @@ pub use check_report::{
     BundleFindings, CheckFindings, ItemFindings, PackForm, Said, WorstOf, WrongRay, check_suite,
     items_not_given, not_given, rays_not_given, write_document,
 };
+pub use claims::Found;
 pub use clauses::{ClauseRays, MIN_RAYS_PER_CLAUSE, can_count_clauses, clause_rays};
 pub use declarations::Declarations;
 pub use input::{

@@ -10,6 +10,10 @@ use raypencil_scene::{Image, Scene, SensorId};
 use crate::arrays::channel;
 use crate::manifest::{ChannelType, FileRole, FileType, ManifestFile};
 
+/// Names of the channels of a sensor's rays, all in metres.
+pub(crate) const RAY_CHANNELS: [&str; 6] =
+    ["origin.X", "origin.Y", "origin.Z", "direction.X", "direction.Y", "direction.Z"];
+
 /// Name of the file of a sensor's rays.
 pub(crate) fn rays_name(sensor: SensorId) -> String {
     format!("rays-{sensor}.npy")
@@ -24,11 +28,10 @@ pub(crate) fn write_rays(
 ) -> Result<ManifestFile, FileError> {
     let path = rays_name(sensor);
     let [height, width] = write_array(referee, scene, sensor, &folder.join(&path))?;
-    let names = ["origin.X", "origin.Y", "origin.Z", "direction.X", "direction.Y", "direction.Z"];
     Ok(ManifestFile {
         kind: Some(FileType::Float64),
         shape: Some(vec![height, width, 6]),
-        channels: names.map(|name| channel(name, "m", ChannelType::Float64)).to_vec(),
+        channels: RAY_CHANNELS.map(|name| channel(name, "m", ChannelType::Float64)).to_vec(),
         ..ManifestFile::of(folder, path, FileRole::Rays)?
     })
 }

@@ -101,20 +101,16 @@ fn said(output: &RenderOutput, Place { sensor, i, j }: Place) -> [u64; 16] {
     bits
 }
 
-/// The sharpness of a scene's bench for candidates that compute in `precision`, slack by slack.
-///
-/// # Errors
-/// As [`Scene::new`].
-pub fn sharpness(
-    scene: &Scene,
-    precision: Precision,
-    progress: &dyn Progress,
-) -> Result<Vec<Sharpness>, SceneError> {
+/// What is done with a function that says what a slack of some size does to the answers of a bench, in some precision.
+type ByChange<'a, R> = &'a dyn Fn(&dyn Fn(Slack, f64, Precision) -> Change) -> R;
+
+/// Measures by a scene's bench.
+fn by_bench<R>(scene: &Scene, of: ByChange<'_, R>) -> Result<R, SceneError> {
     let bench = Bench::of(scene)?;
     let truth = GroundTruth::certified(&bench.scene, &Silent);
     let places = bench.places();
     let honest = Lax { slack: Slack::ShiftRight, size: 0.0 }.render(&bench.scene, &bench.request);
-    let changes = |slack: Slack, size: f64| {
+    Ok(of(&|slack, size, precision| {
         let lax = Lax { slack, size }.render(&bench.scene, &bench.request);
         let recorded = Recorded::of_output("lax", &bench.scene, &lax, precision);
         let changed: Vec<Place> =
@@ -128,32 +124,75 @@ pub fn sharpness(
             false if changed.is_empty() => Change::Nothing,
             false => Change::Excused,
         }
-    };
-    let sizes: Vec<f64> =
-        DECADES.flat_map(|decade| [1.0, 2.0, 5.0].map(|digit| size(digit, decade))).collect();
-    let smallest = |slack: Slack| {
-        progress.stage(&format!("sharpness: {}", slack.key()));
-        let Some(largest) = sizes.iter().rposition(|size| *size <= slack.largest()) else {
-            return Sharpness { slack, noticed: None, excused: false };
+    }))
+}
+
+/// The sizes that are tried of a slack, the smallest first.
+fn sizes(slack: Slack) -> Vec<f64> {
+    let sizes = DECADES.flat_map(|decade| [1.0, 2.0, 5.0].map(|digit| size(digit, decade)));
+    sizes.filter(|size| *size <= slack.largest()).collect()
+}
+
+/// The sharpness of a scene's bench for candidates that compute in `precision`, slack by slack.
+///
+/// # Errors
+/// As [`Scene::new`].
+pub fn sharpness(
+    scene: &Scene,
+    precision: Precision,
+    progress: &dyn Progress,
+) -> Result<Vec<Sharpness>, SceneError> {
+    by_bench(scene, &|changes| {
+        let smallest = |slack: Slack| {
+            progress.stage(&format!("sharpness: {}", slack.key()));
+            let sizes = sizes(slack);
+            // By halving: `noticed` is noticed, and `passes` is not.
+            let (mut noticed, mut passes, mut of_passing) = (None, None, Change::Nothing);
+            let Some(mut at) = sizes.len().checked_sub(1) else {
+                return Sharpness { slack, noticed: None, excused: false };
+            };
+            loop {
+                match changes(slack, sizes[at], precision) {
+                    Change::Wrong => noticed = Some(at),
+                    other => (passes, of_passing) = (Some(at), other),
+                }
+                let first = passes.map_or(0, |passes| passes + 1);
+                match noticed {
+                    Some(noticed) if first < noticed => at = (first + noticed) / 2,
+                    _ => break,
+                }
+            }
+            let excused = of_passing == Change::Excused;
+            Sharpness { slack, noticed: noticed.map(|place| sizes[place]), excused }
         };
-        // By halving: `noticed` is noticed, and `passes` is not.
-        let (mut noticed, mut passes, mut of_passing) = (None, None, Change::Nothing);
-        let mut at = largest;
-        loop {
-            match changes(slack, sizes[at]) {
-                Change::Wrong => noticed = Some(at),
-                other => (passes, of_passing) = (Some(at), other),
-            }
-            let first = passes.map_or(0, |passes| passes + 1);
-            match noticed {
-                Some(noticed) if first < noticed => at = (first + noticed) / 2,
-                _ => break,
-            }
-        }
-        let excused = of_passing == Change::Excused;
-        Sharpness { slack, noticed: noticed.map(|place| sizes[place]), excused }
-    };
-    Ok(Slack::ALL.iter().copied().map(smallest).collect())
+        Slack::ALL.iter().copied().map(smallest).collect()
+    })
+}
+
+/// The place of the first of some statements on sizes that is not so: the stated size is noticed in its precision, and the next
+/// smaller one is not. That takes two renderings, where finding the size takes six.
+///
+/// # Errors
+/// As [`Scene::new`].
+pub(crate) fn first_false(
+    scene: &Scene,
+    stated: &[(Slack, Precision, Option<f64>)],
+) -> Result<Option<usize>, SceneError> {
+    by_bench(scene, &|changes| {
+        let is_so = |(slack, precision, noticed): &(Slack, Precision, Option<f64>)| {
+            let sizes = sizes(*slack);
+            let place = match noticed {
+                None => Some(sizes.len()),
+                Some(noticed) => sizes.iter().position(|size| size == noticed),
+            };
+            place.is_some_and(|place| {
+                let is_noticed = |size: &f64| changes(*slack, *size, *precision) == Change::Wrong;
+                sizes.get(place).is_none_or(is_noticed)
+                    && !place.checked_sub(1).map(|below| &sizes[below]).is_some_and(is_noticed)
+            })
+        };
+        stated.iter().position(|one| !is_so(one))
+    })
 }
 
 /// What a slack does to the answers.

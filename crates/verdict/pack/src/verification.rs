@@ -34,7 +34,7 @@ pub(crate) fn seed_anew() -> u64 {
 
 /// So many different numbers below `of`, each set of them with the same probability. (R. Floyd; J. Bentley, "Programming
 /// Pearls: a sample of brilliance", 1987)
-fn drawn(count: u64, of: u64, seed: u64) -> BTreeSet<u64> {
+pub(crate) fn drawn(count: u64, of: u64, seed: u64) -> BTreeSet<u64> {
     let mut numbers = SplitMix64::new(seed);
     let mut chosen = BTreeSet::new();
     for last in of.saturating_sub(count)..of {

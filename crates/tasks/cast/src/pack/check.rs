@@ -1,17 +1,20 @@
 //! A candidate against a pack of rays.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use raypencil_files::{Fault, FileError, Limits, RayArray, quoted, ray_rows, read_npy_numbers};
 use raypencil_referee::ExactCast;
 use raypencil_scene::{CastRay, Precision, Progress, Sides, Triangles};
 
+use super::PACK_NAME;
 use super::candidate::{CandidateConventions, read_candidate};
 use super::clouds::{BeamQuestion, CloudCase, CloudFacts, is_cloud, of_cloud, read_cloud_of};
 use super::lengths::lengths;
 use super::mistakes::{Trial, explain};
 use super::read::RayPack;
 use super::scan::Scan;
+use super::write::RayPackCounts;
 use crate::answers::{Answers, Questions, cast_with};
 use crate::comparison::{Comparison, Stated, compare_with};
 
@@ -131,7 +134,7 @@ pub fn check_ray_pack(
     progress: &dyn Progress,
 ) -> Result<RayPackChecked, FileError> {
     progress.stage(&format!("{}: reading", pack.display()));
-    let RayPack { mesh, rays, sides, scan, sha256: pack_sha256 } = RayPack::read(pack)?;
+    let RayPack { mesh, rays, sides, scan, counts, sha256: pack_sha256 } = RayPack::read(pack)?;
     let exact = ExactCast::new(&mesh);
     let ground = CastGround { mesh: &mesh, exact: &exact, sides };
     let returns = scan.as_ref().and_then(|scan| Some((scan, scan.returns.as_ref()?)));
@@ -141,6 +144,7 @@ pub fn check_ray_pack(
         Some(returns) => {
             let answers = cast_with(&exact, &rays.rays, sides, Questions::default(), progress);
             refuse_other_answers(pack, &rays, &Stated::of(&answers))?;
+            refuse_other_counts(pack, &counts, (&exact, &rays.rays, sides), &answers)?;
             let question = BeamQuestion::of(&rays, returns, answers.first);
             refuse_other_returns(pack, &question)?;
             Some(question)
@@ -185,6 +189,7 @@ pub fn check_ray_pack(
         Some(question) => (asked, Some(question.scan)),
         None => {
             refuse_other_answers(pack, &rays, &Stated::of(&judged.answers))?;
+            refuse_other_counts(pack, &counts, (&exact, &rays.rays, sides), &judged.answers)?;
             (rays, scan)
         }
     };
@@ -196,6 +201,37 @@ pub fn check_ray_pack(
         sha256: pack_sha256,
     };
     Ok(judged.checked(asked_by, (rays, sides), (name, stated), (Some(mesh), scan)))
+}
+
+/// Most rays of a pack whose backs, limits and lengths are counted again. Tuned: a second or two on two cores.
+pub(super) const MAX_COUNTED: usize = 200_000;
+
+/// Refuses counts of rays that are not those of the pack. Those of a large pack are compared as far as they follow from its first hits.
+fn refuse_other_counts(
+    pack: &Path,
+    stated: &BTreeMap<String, u64>,
+    (exact, rays, sides): (&ExactCast<'_>, &[CastRay], Sides),
+    answers: &Answers,
+) -> Result<(), FileError> {
+    let (counts, known) = match rays.len() <= MAX_COUNTED {
+        true => (RayPackCounts::of(exact, rays, sides).by_key(), RayPackCounts::KEYS),
+        false => (RayPackCounts::of_first(&answers.first).by_key(), RayPackCounts::KEYS_OF_FIRST),
+    };
+    let path = pack.join(PACK_NAME);
+    let refused = |key: &str, found: u64, expected: String| {
+        let fault = Fault::new(format!("counts.{key}"), found.to_string(), expected);
+        Err(FileError::Array(fault.in_file(&path)))
+    };
+    for (key, found) in stated {
+        match counts.iter().position(|(own, _)| key == own) {
+            None => return refused(key, *found, "no such count".into()),
+            Some(at) if at < known && counts[at].1 != *found => {
+                return refused(key, *found, format!("{}, as the rays give", counts[at].1));
+            }
+            Some(_) => {}
+        }
+    }
+    Ok(())
 }
 
 /// What was found of rays.

@@ -1,5 +1,6 @@
 //! Reads a pack of rays.
 
+use std::collections::BTreeMap;
 use std::path::{Component, Path};
 
 use raypencil_files::{Fault, FileError, RayArray, bytes, file_sha256_hex, hex_digits, read_rays, sha256};
@@ -19,6 +20,8 @@ pub(super) struct RayPack {
     pub(super) sides: Sides,
     /// What is known of a sensor's scan; `None`: the rays are of no set.
     pub(super) scan: Option<Scan>,
+    /// How many rays test what, by its own word; empty if it does not say.
+    pub(super) counts: BTreeMap<String, u64>,
     /// SHA-256 of `raypack.json`.
     pub(super) sha256: String,
 }
@@ -29,6 +32,8 @@ struct Document {
     format: u64,
     kind: String,
     sides: String,
+    #[serde(default)]
+    counts: BTreeMap<String, u64>,
     scan: Option<ScanDocument>,
     files: Vec<PackFile>,
 }
@@ -133,6 +138,7 @@ impl RayPack {
             .scan
             .as_ref()
             .map(|scan| Scan::read(folder, &rays.shape, (&scan.mounting, wanted), listed));
-        Ok(Self { mesh: load_triangles(folder)?, rays, sides, scan: scan.transpose()?, sha256 })
+        let counts = document.counts;
+        Ok(Self { mesh: load_triangles(folder)?, rays, sides, scan: scan.transpose()?, counts, sha256 })
     }
 }

@@ -8,7 +8,7 @@ use raypencil_report::{DefectLine, Document, count, counted};
 use raypencil_scene::{FaceId, Reading};
 use serde_json::Map;
 
-use super::check::RayPackChecked;
+use super::check::{MAX_COUNTED, RayPackChecked};
 use crate::comparison::{RayVerdict, Wrong, wrong_text};
 use crate::page::{CastPage, ComparedHits};
 use crate::text::counts_text;
@@ -87,6 +87,12 @@ impl RayPackChecked {
     /// What the rays are, and what was judged of a cloud.
     fn notes(&self) -> Vec<String> {
         let mut notes = vec![format!("{}.", counts_text(&self.answers))];
+        if self.mesh.is_some() && self.rays.rays.len() > MAX_COUNTED {
+            notes.push(format!(
+                "How many rays test backs, limits and lengths is the pack's own word: not counted again beyond {} rays.",
+                count(MAX_COUNTED as u64)
+            ));
+        }
         let Some(cloud) = &self.cloud else { return notes };
         let range = if cloud.has_range { ", and the field range" } else { "" };
         notes.push(format!(

@@ -10,11 +10,11 @@ use raypencil_files::{
 use raypencil_referee::ExactCast;
 use raypencil_report::VERSION;
 use raypencil_scene::{CastRay, FaceId, NamedRaySet, Progress, Reading, Side, Sides, Triangles};
-use serde_json::json;
+use serde_json::{Map, json};
 
 use super::scan::{Scan, ScanReturns};
 use super::{PACK_FORMAT, PACK_NAME};
-use crate::answers::{Questions, cast};
+use crate::answers::{FirstHit, Questions, cast};
 use crate::returns::{BeamReturns, keep_json};
 use crate::write::{CastSource, write_answers, write_beam_returns};
 
@@ -44,8 +44,12 @@ pub struct RayPackCounts {
 }
 
 impl RayPackCounts {
-    fn of(mesh: &Triangles, rays: &[CastRay], sides: Sides) -> Self {
-        let exact = ExactCast::new(mesh);
+    /// Number of counts.
+    pub(super) const KEYS: usize = 9;
+    /// Number of those that follow from the first hits alone; they come first.
+    pub(super) const KEYS_OF_FIRST: usize = 5;
+
+    pub(super) fn of(exact: &ExactCast<'_>, rays: &[CastRay], sides: Sides) -> Self {
         let other = if sides == Sides::Both { Sides::Fronts } else { Sides::Both };
         let count = |ray: &CastRay| {
             let read = exact.reading(ray, sides);
@@ -81,6 +85,37 @@ impl RayPackCounts {
             t_max: a.t_max + b.t_max,
             lengths: a.lengths + b.lengths,
         })
+    }
+
+    /// The counts by their keys in `raypack.json`, those first that follow from the first hits alone.
+    pub(super) fn by_key(&self) -> [(&'static str, u64); Self::KEYS] {
+        [
+            ("rays", self.rays),
+            ("hits", self.hits),
+            ("tooNear", self.too_near),
+            ("misses", self.misses),
+            ("ties", self.ties),
+            ("backs", self.backs),
+            ("tMin", self.t_min),
+            ("tMax", self.t_max),
+            ("lengths", self.lengths),
+        ]
+    }
+
+    /// What follows from the first hits: of rays, hits, what is too near, misses and ties; the rest is 0.
+    pub(super) fn of_first(first: &[Reading<FirstHit>]) -> Self {
+        let mut counts = Self { rays: first.len() as u64, ..Self::default() };
+        for reading in first {
+            match reading {
+                Reading::Hit(hit) => {
+                    counts.hits += 1;
+                    counts.ties += u64::from(hit.ties > 1);
+                }
+                Reading::TooNear => counts.too_near += 1,
+                Reading::Miss => counts.misses += 1,
+            }
+        }
+        counts
     }
 
     /// What the rays of the pack do not test, in words.
@@ -146,7 +181,7 @@ fn write_pack_of(
     let told = returns.map(|returns| BeamReturns::of_first(&answers.first, returns.wanted, &returns.weights));
     let of_returns =
         told.map_or_else(|| Ok(Vec::new()), |told| write_beam_returns(folder, &told, &rays.shape))?;
-    let counts = RayPackCounts::of(mesh, &rays.rays, sides);
+    let counts = RayPackCounts::of(&ExactCast::new(mesh), &rays.rays, sides);
     progress.stage("writing the mesh and the rays");
     let vertices: Vec<f64> = mesh.vertices().iter().flatten().copied().collect();
     let faces: Vec<u32> = mesh.faces().iter().flatten().copied().collect();
@@ -172,10 +207,7 @@ fn write_pack_of(
         "kind": "rays",
         "raypencilVersion": VERSION,
         "sides": if sides == Sides::Both { "both" } else { "fronts" },
-        "counts": {
-            "rays": counts.rays, "hits": counts.hits, "tooNear": counts.too_near, "misses": counts.misses, "ties": counts.ties,
-            "backs": counts.backs, "tMin": counts.t_min, "tMax": counts.t_max, "lengths": counts.lengths,
-        },
+        "counts": counts.by_key().map(|(key, count)| (key.to_string(), json!(count))).into_iter().collect::<Map<_, _>>(),
         "files": files,
     });
     if let Some(scan) = scan {

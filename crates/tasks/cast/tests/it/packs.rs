@@ -265,6 +265,21 @@ fn a_changed_pack_and_arrays_of_another_shape_are_refused() {
     let folders = Folders::right();
     write_npy_numbers(folders.pack.path().join("rays.npy"), &[1, 8], &[1.0; 8]).unwrap();
     assert!(refused(&folders).contains("SHA-256"), "{}", refused(&folders));
+    // How many rays test what follows from the pack.
+    let folders = Folders::right();
+    let listing = folders.pack.path().join("raypack.json");
+    let written: serde_json::Value = serde_json::from_slice(&std::fs::read(&listing).unwrap()).unwrap();
+    for (key, count) in written["counts"].as_object().unwrap() {
+        let mut document = written.clone();
+        document["counts"][key] = (count.as_u64().unwrap() + 1).into();
+        std::fs::write(&listing, document.to_string()).unwrap();
+        let message = refused(&folders);
+        assert!(message.contains(&format!("counts.{key}: ")), "{message}");
+    }
+    let mut document = written;
+    document["counts"]["rounded"] = 3.into();
+    std::fs::write(&listing, document.to_string()).unwrap();
+    assert!(refused(&folders).contains("counts.rounded: 3; expected no such count"), "{}", refused(&folders));
     // An answer is changed; then its digest is too.
     let folders = Folders::right();
     let t = folders.pack.path().join("t.npy");

@@ -20,6 +20,7 @@ use crate::check_report::findings::{
 };
 use crate::check_report::given::{coarse_storages, items_not_given, listed_totals, not_given};
 use crate::check_report::sharpness;
+use crate::claims::Found;
 use crate::published::PackIdentity;
 
 /// Pictures of every sensor: the exact ranges, the candidate's, and their difference.
@@ -74,6 +75,8 @@ fn findings(checked: &Checked) -> CheckFindings {
             "verified",
             json!({
                 "answers": verified.answers, "of": verified.of, "seed": verified.seed, "ray_files": verified.rays,
+                "clauses": { "found": verified.clauses.found, "of": verified.clauses.of },
+                "sizes": { "found": verified.sizes.found, "of": verified.sizes.of },
             }),
         ),
         ("diagnosis", diagnosis.as_ref().map(Diagnosis::to_json).into()),
@@ -226,8 +229,9 @@ fn notes(checked: &Checked) -> Vec<String> {
     notes
 }
 
-/// Which pack it was and what of it was verified, in a sentence.
-fn pack_words(pack: &PackIdentity, Verified { answers, of, rays, seed }: Verified) -> String {
+/// Which pack it was and what of it was verified, in sentences.
+fn pack_words(pack: &PackIdentity, verified: Verified) -> String {
+    let Verified { answers, of, rays, seed, clauses, sizes } = verified;
     let all = if answers == of { "all " } else { "" };
     let hint = match seed {
         _ if answers == of => String::new(),
@@ -235,8 +239,24 @@ fn pack_words(pack: &PackIdentity, Verified { answers, of, rays, seed }: Verifie
         None => " (all: --verify)".into(),
     };
     let rays = counted(rays, "array of rays is that", "arrays of rays are those");
+    let numbers = [("counts of clauses", clauses), ("sizes of tolerances", sizes)];
+    let numbers = numbers.into_iter().filter(|(_, found)| found.of > 0).map(|(name, Found { found, of })| {
+        let all = if found == of { "all " } else { "" };
+        format!("{all}{} of {} {name}", count(found), count(of))
+    });
+    let numbers: Vec<String> = numbers.collect();
+    let by_seed = match seed {
+        Some(seed) if clauses.is_partial() || sizes.is_partial() => {
+            format!(", drawn by seed {seed}, (all: --verify)")
+        }
+        _ => String::new(),
+    };
+    let numbers = match numbers.as_slice() {
+        [] => String::new(),
+        numbers => format!(" Found again, too: {}{by_seed}.", numbers.join(" and ")),
+    };
     format!(
-        "The pack ({}): {all}{} of {} answers are the referee's{hint}, and so is each by which a ray is wrong; {rays} of its scene.",
+        "The pack ({}): {all}{} of {} answers are the referee's{hint}, and so is each by which a ray is wrong; {rays} of its scene.{numbers}",
         pack.words(),
         count(answers),
         count(of)

@@ -111,6 +111,19 @@ fn a_manifest_that_says_what_is_not_so_is_refused() {
         &|of| of["fluxModel"] = "eq1".into(),
         &["fluxModel: Eq1; expected Radiometric, as the scene has"],
     );
+    refused(
+        &|of| of["files"][4]["channels"][0]["unit"] = "km".into(),
+        &["files[4]", "unit \"km\"", "expected"],
+    );
+    refused(&|of| of["files"][4]["channels"][0]["name"] = "best.T".into(), &["files[4]", "best.T"]);
+    refused(&|of| of["sensors"][1]["name"] = "lidar".into(), &["sensors[1]: \"lidar\"", "beam-0"]);
+    refused(
+        &|of| {
+            of["sharpness"] =
+                serde_json::json!([{ "slack": "shift-right", "unit": "of a cell", "f64": 1e-15 }])
+        },
+        &["sharpness: 1 sizes; expected none: there is no bench"],
+    );
     let no_maps = |of: &mut serde_json::Value| {
         of["files"].as_array_mut().unwrap().retain(|file| file["path"] != "camera.exr");
     };
@@ -193,14 +206,17 @@ fn a_check_says_what_it_verified() {
     let whole = packed();
     let said = screen(whole.path(), &["check", "pack", "right"], 0);
     let all = "): all 128 of 128 answers are the referee's, and so is each by which a ray is wrong; 2 arrays of rays are \
-               those of its scene.";
+               those of its scene. Found again, too: all 51 of 51 counts of clauses.";
     assert!(said.contains(all), "{said}");
     assert_eq!(screen(whole.path(), &["check", "pack", "right", "--verify"], 0), said);
     let json = screen(whole.path(), &["check", "pack", "right", "--verify", "--json"], 0);
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(
         json["verified"],
-        serde_json::json!({ "answers": 128, "of": 128, "seed": null, "ray_files": 2 })
+        serde_json::json!({
+            "answers": 128, "of": 128, "seed": null, "ray_files": 2,
+            "clauses": { "found": 51, "of": 51 }, "sizes": { "found": 0, "of": 0 },
+        })
     );
     // Which pack it is: not a published one.
     let (_, sha256) = file_sha256_hex(&whole.path().join("pack/manifest.json")).unwrap();
