@@ -27,6 +27,8 @@ struct Open {
     folder: PathBuf,
     /// Files below it, with their digests.
     written: BTreeMap<PathBuf, String>,
+    /// Files of earlier runs that this one is about to remove, with their digests.
+    claimed: BTreeMap<PathBuf, String>,
     /// The folder's lock, which has each file before it is put in its place.
     ahead: Option<Arc<File>>,
     /// Threads may play several processes.
@@ -80,6 +82,7 @@ impl Journal {
             number,
             folder,
             written: BTreeMap::new(),
+            claimed: BTreeMap::new(),
             ahead: ahead.map(Arc::new),
             process: process(),
         });
@@ -88,11 +91,17 @@ impl Journal {
 
     /// The files that were written so far, by their paths in the folder, with their digests.
     pub fn written(&self) -> BTreeMap<PathBuf, String> {
+        self.noted(|open| &open.written)
+    }
+
+    /// The files of earlier runs that were to be removed, whether they are gone or not.
+    pub(crate) fn claimed(&self) -> BTreeMap<PathBuf, String> {
+        self.noted(|open| &open.claimed)
+    }
+
+    fn noted(&self, of: fn(&Open) -> &BTreeMap<PathBuf, String>) -> BTreeMap<PathBuf, String> {
         let open = open();
-        open.iter()
-            .find(|open| open.number == self.number)
-            .map(|open| open.written.clone())
-            .unwrap_or_default()
+        open.iter().find(|open| open.number == self.number).map(|open| of(open).clone()).unwrap_or_default()
     }
 }
 
@@ -136,6 +145,15 @@ pub(crate) fn enter(place: &Path, sha256: &str) {
     for open in own(&mut open()) {
         if let Some(name) = open.name_of(place).map(PathBuf::from) {
             open.written.insert(name, sha256.to_string());
+        }
+    }
+}
+
+/// Notes a file of an earlier run that is about to be removed.
+pub(crate) fn enter_claim(place: &Path, sha256: &str) {
+    for open in own(&mut open()) {
+        if let Some(name) = open.name_of(place).map(PathBuf::from) {
+            open.claimed.insert(name, sha256.to_string());
         }
     }
 }

@@ -260,14 +260,16 @@ impl OutputFolder {
 
     /// Lists what a run that failed has written beside what lay there, so that the next one can remove both.
     fn list_what_is_there(&mut self) -> Result<(), FolderError> {
-        let written = self.written();
-        if written.is_empty() && !self.is_unlisted {
+        let (written, claimed) = (self.written(), self.journal.claimed());
+        if written.is_empty() && claimed.is_empty() && !self.is_unlisted {
             return Ok(());
         }
         self.subject = self.subject.take().or_else(|| listed_subject(&self.folder));
         let is_there = |(name, sha256): &&Entry| {
             file_sha256_hex(&self.folder.join(name)).is_ok_and(|(_, found)| found == *sha256)
         };
+        // A pack that could not remove all of an earlier one has claimed the rest.
+        self.earlier.extend(claimed);
         let mut files: BTreeMap<PathBuf, String> = self.earlier.iter().filter(is_there).cloned().collect();
         files.extend(written);
         self.list(&files)

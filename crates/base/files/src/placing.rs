@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::disk::{self, Temporary};
 use crate::error::FileError;
-use crate::journal::{enter, is_noted, lines_ahead, open_folders};
+use crate::journal::{enter, enter_claim, is_noted, lines_ahead, open_folders};
 use crate::running::has_run;
 use crate::sha256::file_sha256_hex;
 
@@ -44,13 +44,17 @@ pub fn put_in_place(from: &Path, to: &Path) -> Result<(), FileError> {
     attempt().map_err(|error: io::Error| FileError::io(to, "write", error))
 }
 
-/// Says that a file, which is of this digest, is the open run's to remove: if that dies, the next one does.
+/// Says that a file, which is of this digest, is the open run's to remove: if that dies or fails, the next one does.
 ///
 /// # Errors
 /// That of the file system, with the path of the file.
 pub fn claim(file: &Path, sha256: &str) -> Result<(), FileError> {
     let attempt = || match place_of(file)? {
-        Some(place) => write_ahead(&place, sha256),
+        Some(place) => {
+            write_ahead(&place, sha256)?;
+            enter_claim(&place, sha256);
+            Ok(())
+        }
         None => Ok(()),
     };
     attempt().map_err(|error: io::Error| FileError::io(file, "claim", error))

@@ -428,4 +428,11 @@ fn a_pack_leaves_no_list_and_nothing_of_an_earlier_one() {
     std::fs::write(folder.join(LOCK_NAME), lock).unwrap();
     pack(&["b"]).finish_unlisted().unwrap();
     assert_eq!(names(folder), ["b"]);
+    // One that fails between the claim and the removal leaves them to the next one, too.
+    let failed = pack(&[]);
+    crate::claim(&folder.join("b"), &file_sha256_hex(&folder.join("b")).unwrap().1).unwrap();
+    drop(failed);
+    assert!(!folder.join(LOCK_NAME).exists());
+    pack(&["c"]).finish_unlisted().unwrap();
+    assert_eq!(names(folder), ["c"]);
 }

@@ -280,7 +280,9 @@ pub fn walk(walked: &Walked<'_>, tree: &Path, run: Run<'_>, choose: &dyn Fn(usiz
             if walked.mark.is_some_and(|mark| found.contains_key(Path::new(mark))) {
                 let is_locked = found.contains_key(Path::new(".raypencil-lock"));
                 let beside = |phase: usize| {
-                    let is_own = |name: &&PathBuf| alone[phase].files.contains_key(*name);
+                    // A pack's list names its own files, where it could not be removed.
+                    let is_list = |name: &&PathBuf| name.as_os_str() == ".raypencil-made";
+                    let is_own = |name: &&PathBuf| alone[phase].files.contains_key(*name) || is_list(name);
                     found.keys().find(|name| !is_locked && !is_own(name))
                 };
                 let other = |phase: usize| alone[phase].first_other(&found).or_else(|| beside(phase));
