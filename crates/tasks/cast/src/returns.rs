@@ -255,7 +255,56 @@ fn is_apart(near: f64, far: f64, separation: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+    use raypencil_scene::{FaceId, Side};
+
     use super::*;
+
+    /// The returns of one beam by the ranges and weights of its rays, which all meet a face at a right angle.
+    fn told(rays: &[(f64, f64)], keep: Keep) -> Vec<BeamReturn> {
+        let hit = |&(range, _): &(f64, f64)| {
+            Reading::Hit(FirstHit {
+                face: FaceId(0),
+                side: Side::Front,
+                ties: 1,
+                t: range,
+                range,
+                point: DVec3::ZERO,
+                normal: DVec3::X,
+                barycentric: [1.0, 0.0, 0.0],
+                cos_incidence: 1.0,
+            })
+        };
+        let first: Vec<Reading<FirstHit>> = rays.iter().map(hit).collect();
+        let weights: Vec<f64> = rays.iter().map(|(_, weight)| *weight).collect();
+        let returns = BeamReturns::of_first(&first, Returns { keep, separation_m: 0.5 }, &weights);
+        returns.told().iter().flatten().copied().collect()
+    }
+
+    #[test]
+    fn of_equal_strengths_the_nearer_is_told() {
+        // 4 / 2^2 = 1 / 1^2, and again 16 / 4^2.
+        let rays = [(2.0, 4.0), (1.0, 1.0), (4.0, 16.0)];
+        for (keep, expected) in
+            [(Keep::Strongest, vec![1]), (Keep::UpTo(1), vec![1]), (Keep::UpTo(2), vec![1, 2])]
+        {
+            let numbers: Vec<u32> = told(&rays, keep).iter().map(|one| one.number).collect();
+            assert_eq!(numbers, expected, "{keep:?}");
+        }
+    }
+
+    #[test]
+    fn a_range_without_a_finite_light_is_its_own_mean() {
+        // Infinite light at 0, and none where its square is beyond the largest double.
+        for range in [0.0, 1e200] {
+            let [only] = told(&[(range, 1.0), (range, 1.0)], Keep::First)[..] else { panic!("one return") };
+            assert_eq!((only.mean_range, only.rays), (range, 2));
+        }
+        // 2 m of the light 3 / 4, 2.25 m of the light 1 / 5.0625.
+        let [both] = told(&[(2.0, 3.0), (2.25, 1.0)], Keep::First)[..] else { panic!("one return") };
+        let light = 0.75 + 1.0 / 5.0625;
+        assert_eq!((both.strength, both.mean_range), (light, (1.5 + 2.25 / 5.0625) / light));
+    }
 
     #[test]
     fn gaps_are_compared_without_rounding() {

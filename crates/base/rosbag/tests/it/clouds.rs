@@ -107,6 +107,8 @@ fn what_is_no_bag_of_clouds_is_refused() {
         (bag(CLOUD, "ros1", &[head(1, 1, 0)]), "message 1 of /at: the encoding \"ros1\"; expected cdr"),
         (bag(CLOUD, "cdr", &[head(1, 1, 0)]), "which end within a value; expected the CDR of sensor_msgs"),
         (bag(CLOUD, "cdr", &[head(1, 1, u32::MAX)]), "message 1 of /at: 4294967295 fields, more than 1024"),
+        (bag(CLOUD, "cdr", &[head(1, 1, 1025)]), "message 1 of /at: 1025 fields, more than 1024"),
+        (bag(CLOUD, "cdr", &[head(1, 1, 1024)]), "which end within a value; expected the CDR of sensor_msgs"),
         (bag(CLOUD, "cdr", &[vec![0, 1]]), "message 1 of /at: 2 bytes; expected the CDR of"),
         (
             bag("sensor_msgs/msg/Imu", "cdr", &[head(1, 1, 0)]),
@@ -119,8 +121,10 @@ fn what_is_no_bag_of_clouds_is_refused() {
         assert!(found.contains(message), "{found}: {message}");
     }
     // Memory is asked for by what a message claims, but not for points that its bytes cannot hold.
-    let claims = bag(CLOUD, "cdr", &[head(1, 5, 0), head(70_000, 70_000, 0)]);
-    assert_eq!(largest_point_cloud(claims.as_slice(), claims.len() as u64), Some(32 / 3));
+    for heads in [[head(1, 5, 0), head(70_000, 70_000, 0)], [head(70_000, 70_000, 0), head(1, 5, 0)]] {
+        let claims = bag(CLOUD, "cdr", &heads);
+        assert_eq!(largest_point_cloud(claims.as_slice(), claims.len() as u64), Some(32 / 3));
+    }
 }
 
 /// A bag that was cut off anywhere, or of which a byte is another, is read or refused.

@@ -57,6 +57,8 @@ fn several_series_of_poses_are_told_apart_by_topic_or_frames() {
         "topic /gps: no pose; expected messages of nav_msgs/msg/Odometry, geometry_msgs/msg/PoseStamped or tf2_msgs/msg/TFMessage; \
          the file has /odom, /pose, /tf"
     );
+    // The beginning of a name is another name.
+    assert!(refused(Some("/od"), None).starts_with("topic /od: no pose"));
     assert!(refused(None, Some(["lidar", "map"])).starts_with("file: no pose of \"map\" in \"lidar\""));
 }
 
@@ -78,10 +80,15 @@ pub(super) fn bag(schema: &str, encoding: &str, messages: &[Vec<u8>]) -> Vec<u8>
 
 /// A `PoseStamped` in big or little endian: frame `map` at 2.5 s, position (1, 2, 3), no turn.
 fn pose(is_big: bool) -> Vec<u8> {
+    pose_at([2, 500_000_000], is_big)
+}
+
+/// The same at a time of seconds and nanoseconds.
+fn pose_at(stamp: [u32; 2], is_big: bool) -> Vec<u8> {
     let word = |value: u32| if is_big { value.to_be_bytes() } else { value.to_le_bytes() };
     let real = |value: f64| if is_big { value.to_be_bytes() } else { value.to_le_bytes() };
     let mut data = vec![0, u8::from(!is_big), 0, 0];
-    data.extend([word(2), word(500_000_000), word(4)].concat());
+    data.extend([word(stamp[0]), word(stamp[1]), word(4)].concat());
     data.extend(b"map\0");
     data.extend([1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0].map(real).concat());
     data
@@ -96,6 +103,19 @@ fn either_byte_order_is_read() {
         assert_eq!((pose.time_s, pose.position, pose.rotation), (2.5, [1.0, 2.0, 3.0], [0.0, 0.0, 0.0, 1.0]));
     }
     assert_eq!(found.poses.len(), 2);
+}
+
+#[test]
+fn nanoseconds_count_forwards_and_stay_below_a_second() {
+    let times = |stamp: [u32; 2]| {
+        let found = read(&bag(POSE, "cdr", &[pose_at(stamp, false)]), None, None)?;
+        Ok::<f64, String>(found.poses[0].time_s)
+    };
+    // Half a second after two seconds before the epoch.
+    assert_eq!(times([(-2_i32).cast_unsigned(), 500_000_000]), Ok(-1.5));
+    assert_eq!(times([0, 999_999_999]), Ok(0.999_999_999));
+    let fault = times([0, 1_000_000_000]).expect_err("a second and more");
+    assert!(fault.contains("a stamp of 1000000000 nanoseconds"), "{fault}");
 }
 
 #[test]
