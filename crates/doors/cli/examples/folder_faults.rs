@@ -1,5 +1,6 @@
 //! Each operation of each command that writes a folder fails once, and once its process ends there: `just folder-faults` writes the
-//! table of docs/evidence/folder-faults.md, of all commands or of those that are named. Each run is a process of its own.
+//! table of docs/evidence/folder-faults.md, of all commands or of those that are named, `just folder-faults drive 100..200` of some of
+//! their operations. Each run is a process of its own.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
@@ -62,10 +63,17 @@ fn table(names: &[String]) -> ExitCode {
     let run = |tree: &Path, words: &[String], fault: Fault| run_elsewhere(&report, tree, words, fault);
     println!("| command | operations | runs with a fault | broken |\n| --- | ---: | ---: | ---: |");
     let mut is_whole = true;
-    let is_asked = |name: &str| names.is_empty() || names.iter().any(|asked| asked == name);
+    let range = |word: &String| {
+        let (first, end) = word.split_once("..")?;
+        Some(first.parse::<usize>().ok()?..end.parse::<usize>().ok()?)
+    };
+    let pieces: Vec<std::ops::Range<usize>> = names.iter().filter_map(range).collect();
+    let names: Vec<&String> = names.iter().filter(|word| range(word).is_none()).collect();
+    let is_asked = |name: &str| names.is_empty() || names.iter().any(|asked| *asked == name);
+    let is_in_piece = |number: &usize| pieces.is_empty() || pieces.iter().any(|piece| piece.contains(number));
     for walked in WALKED.iter().filter(|walked| is_asked(walked.name)) {
         let start = std::time::Instant::now();
-        let figures = walk(walked, &tree, &run, &|count| (0..count).collect());
+        let figures = walk(walked, &tree, &run, &|count| (0..count).filter(is_in_piece).collect());
         let words = format!("{} {}", walked.name, walked.words);
         eprintln!("{words}: {:.0} s", start.elapsed().as_secs_f64());
         println!("| `{words}` | {} | {} | {} |", figures.operations, figures.states, figures.broken.len());

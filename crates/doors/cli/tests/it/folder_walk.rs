@@ -230,6 +230,12 @@ impl Alone {
     }
 }
 
+/// Whether a file is a note of a run on its own files, which it could not remove: the list of a pack, or the lock of a folder within
+/// the folder of the run. Nobody holds that lock, and the next run takes it.
+fn is_note(name: &Path) -> bool {
+    name == Path::new(".raypencil-made") || name.ends_with(".raypencil-lock")
+}
+
 /// Walks through operations of a command, which are chosen by their number in all. An earlier run has made more files, and a later
 /// one makes fewer.
 pub fn walk(walked: &Walked<'_>, tree: &Path, run: Run<'_>, choose: &dyn Fn(usize) -> Vec<usize>) -> Figures {
@@ -280,9 +286,7 @@ pub fn walk(walked: &Walked<'_>, tree: &Path, run: Run<'_>, choose: &dyn Fn(usiz
             if walked.mark.is_some_and(|mark| found.contains_key(Path::new(mark))) {
                 let is_locked = found.contains_key(Path::new(".raypencil-lock"));
                 let beside = |phase: usize| {
-                    // A pack's list names its own files, where it could not be removed.
-                    let is_list = |name: &&PathBuf| name.as_os_str() == ".raypencil-made";
-                    let is_own = |name: &&PathBuf| alone[phase].files.contains_key(*name) || is_list(name);
+                    let is_own = |name: &&PathBuf| alone[phase].files.contains_key(*name) || is_note(name);
                     found.keys().find(|name| !is_locked && !is_own(name))
                 };
                 let other = |phase: usize| alone[phase].first_other(&found).or_else(|| beside(phase));
