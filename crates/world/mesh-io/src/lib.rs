@@ -66,7 +66,7 @@ pub mod triangles;
 
 pub use cloud::{
     Cloud, CloudColumn, CloudStorage, PackedField, PackedKind, PackedPoints, claimed_points,
-    cloud_from_bytes, is_cloud_file, read_cloud,
+    cloud_from_bytes, is_cloud_file, lzf_compressed, read_cloud,
 };
 pub use dem::{
     AxisSystem, Dem, DemFacts, DemOptions, HeightUnit, LengthUnit, NoData, Registration, SpikeFacts, Spikes,

@@ -10,5 +10,6 @@ mod read;
 
 pub use columns::{Cloud, CloudColumn, CloudStorage};
 pub(crate) use columns::{decimal, decimals};
+pub use lzf::compressed as lzf_compressed;
 pub use packed::{PackedField, PackedKind, PackedPoints};
 pub use read::{claimed_points, cloud_from_bytes, is_cloud_file, read_cloud};
