@@ -209,18 +209,7 @@ pub(super) fn of_steps(list: &mut List<'_>, trial: &Trial, pairs: &[(usize, f64)
             if let Some(cloud) = &mut trial.cloud {
                 widen(&mut cloud.error, &is_of_step, 0.5 * step);
             }
-            if let (Some(ranges), Some(errors)) = (&mut trial.stated.range, &mut trial.stated.range_error) {
-                let is_of_step: Vec<bool> = ranges
-                    .iter()
-                    .zip(&*errors)
-                    .map(|(range, error)| is_multiple(*range, *error, step))
-                    .collect();
-                if is_cut {
-                    shifted(ranges, &is_of_step, 0.5 * step);
-                }
-                widen(errors, &is_of_step, 0.5 * step);
-            }
-            trial.allowance = step;
+            undo_in_field(trial, step, is_cut);
         });
     }
     if let (Some(ranges), Some(errors)) = (&trial.stated.range, &trial.stated.range_error) {
@@ -236,20 +225,7 @@ pub(super) fn of_steps(list: &mut List<'_>, trial: &Trial, pairs: &[(usize, f64)
             let is_cut = off.is_some_and(|off| off < -0.25 * step);
             let how = if is_cut { "cut" } else { "rounded" };
             list.add(format!("the field range is {how} to multiples of {step}"), false, move |trial| {
-                let (Some(ranges), Some(errors)) = (&mut trial.stated.range, &mut trial.stated.range_error)
-                else {
-                    return;
-                };
-                let is_of_step: Vec<bool> = ranges
-                    .iter()
-                    .zip(&*errors)
-                    .map(|(range, error)| is_multiple(*range, *error, step))
-                    .collect();
-                if is_cut {
-                    shifted(ranges, &is_of_step, 0.5 * step);
-                }
-                widen(errors, &is_of_step, 0.5 * step);
-                trial.allowance = step;
+                undo_in_field(trial, step, is_cut);
             });
         }
     }
@@ -280,6 +256,19 @@ fn multiples(trial: &Trial, step: f64) -> Vec<bool> {
         Some(is_multiple(from, error, step))
     };
     (0..trial.rays.len()).map(|k| of(k).unwrap_or(false)).collect()
+}
+
+/// Takes a step out of the field `range`, if there is one: a multiple may be off by half of it, after half of it is added where it was cut.
+fn undo_in_field(trial: &mut Trial, step: f64, is_cut: bool) {
+    if let (Some(ranges), Some(errors)) = (&mut trial.stated.range, &mut trial.stated.range_error) {
+        let is_of_step: Vec<bool> =
+            ranges.iter().zip(&*errors).map(|(range, error)| is_multiple(*range, *error, step)).collect();
+        if is_cut {
+            shifted(ranges, &is_of_step, 0.5 * step);
+        }
+        widen(errors, &is_of_step, 0.5 * step);
+    }
+    trial.allowance = step;
 }
 
 fn shifted(numbers: &mut [f64], which: &[bool], by: f64) {
