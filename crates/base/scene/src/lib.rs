@@ -21,6 +21,7 @@
 //! triangles ray_set  meshes and rays of no sensor, as their files give them
 //! reading       what a range sensor reads along a ray: a hit, too near, a miss
 //! pattern named_ray_set  patterns of range sensors (LiDAR) as rays, and ray sets with names
+//! head_sweep             sets of spinning heads whose rays are made part by part
 //! ```
 //!
 //! ```
@@ -49,6 +50,7 @@ mod approximations;
 mod beam;
 mod camera;
 mod error;
+mod head_sweep;
 mod hit_quantity;
 mod image;
 mod mesh;
@@ -72,6 +74,7 @@ pub use approximations::{Fidelity, Switches, UnknownSwitch};
 pub use beam::{Beam, Profile};
 pub use camera::{Camera, Filter, Lens};
 pub use error::{SceneError, check_count, check_range};
+pub use head_sweep::HeadSweep;
 pub use hit_quantity::{HitQuantity, HitRaster, HitRasterMut, HitValue};
 pub use image::{Image, Maybe, Sample};
 pub use mesh::{Material, Mesh, VertexRounding};

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::pattern::{Mounting, PatternRays, Returns};
+use crate::pattern::{EchoLight, Mounting, PatternRays, Returns};
 use crate::{CastRay, Pose, RaySet, SceneError, Sides};
 
 /// Greatest length of a ray set's name.
@@ -39,10 +39,12 @@ pub struct NamedRaySet {
     pub elevations_deg: Option<Vec<f64>>,
     /// Where the pattern's own frame stands in the mesh's.
     pub mounting: Mounting,
+    /// What surfaces and air leave of the light of an echo.
+    pub echo: EchoLight,
 }
 
 impl NamedRaySet {
-    /// A set of the rays of a pattern, which stand in the mesh's frame.
+    /// A set of the rays of a pattern, which stand in the mesh's frame. All light comes back from its echoes.
     ///
     /// # Errors
     /// Names the first ray that is wrong, or the name if it is none.
@@ -50,7 +52,8 @@ impl NamedRaySet {
         Self::check_name(name)?;
         let PatternRays { shape, rays, times, weights, returns, elevations_deg, mounting } = pattern;
         let set = RaySet::new(rays, sides)?;
-        Ok(Self { name: name.to_string(), shape, set, times, weights, returns, elevations_deg, mounting })
+        let (name, echo) = (name.to_string(), EchoLight::default());
+        Ok(Self { name, shape, set, times, weights, returns, elevations_deg, mounting, echo })
     }
 
     /// Up direction of the pattern at its first pose, in the mesh's frame.

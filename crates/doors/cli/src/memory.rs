@@ -56,7 +56,7 @@ const MAX_FINE_CELLS: u64 = 1 << 28;
 /// Bytes that `cast` takes for each ray, and for each face.
 const CAST: [u64; 2] = [800, 380];
 
-/// Bytes that `cast --scans` takes for each ray: the ray itself and its time. Answers are those of one scan.
+/// Bytes that `cast --scans` takes for each ray of a set whose rays are all made: the ray itself and its time. Answers are those of one scan.
 const RAY_OF_SCANS: u64 = 100;
 
 /// Bytes that `check` takes for each ray of a pack of rays, for each of its faces, and for each point of a cloud.

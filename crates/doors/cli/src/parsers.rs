@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, StringValueParser, TypedValueParser};
 use raypencil::campaign::{MAX_SHARDS, PartName, Shard};
-use raypencil::cast::{BagFields, CloudFrame, rays_from_bytes};
+use raypencil::cast::{BagFields, CloudFrame, PcdData, rays_from_bytes};
 use raypencil::drive::RecordContents;
 use raypencil::harness::MapFormat;
 use raypencil::io::{DeclaredChannel, HeightUnit, LengthUnit, NoData, SceneIoError, Setting, UpAxis};
@@ -86,7 +86,24 @@ pub(crate) fn cloud_frame() -> impl TypedValueParser<Value = CloudFrame> {
     one_of([
         (CloudFrame::Mesh.option(), "That of the mesh", CloudFrame::Mesh),
         (CloudFrame::Sensor.option(), "The sensor's own at the time of each ray", CloudFrame::Sensor),
-        (CloudFrame::SensorAtStart.option(), "The sensor's own at its first pose", CloudFrame::SensorAtStart),
+        (
+            CloudFrame::SensorAtStart.option(),
+            "The sensor's own at the time of the first ray",
+            CloudFrame::SensorAtStart,
+        ),
+        (
+            CloudFrame::SensorAtEnd.option(),
+            "The sensor's own at the time of the last ray",
+            CloudFrame::SensorAtEnd,
+        ),
+    ])
+}
+
+/// `--pcd`.
+pub(crate) fn pcd_data() -> impl TypedValueParser<Value = PcdData> {
+    one_of([
+        (PcdData::Binary.word(), "Point by point", PcdData::Binary),
+        (PcdData::BinaryCompressed.word(), "Field by field, compressed by LZF", PcdData::BinaryCompressed),
     ])
 }
 

@@ -141,7 +141,9 @@ pub(crate) fn check<'py>(
         let share = if verify { Verification::All } else { Verification::Drawn { seed: None } };
         let of_word = |word: String| {
             let found = CloudFrame::ALL.into_iter().find(|frame| frame.option() == word);
-            found.ok_or_else(|| Failure::new(format!("frame is {word:?}; expected mesh, sensor or start")))
+            found.ok_or_else(|| {
+                Failure::new(format!("frame is {word:?}; expected mesh, sensor, start or end"))
+            })
         };
         let frame = frame.map(of_word).transpose()?;
         let named = declared(&channels, scale)?;

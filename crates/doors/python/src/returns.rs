@@ -4,7 +4,7 @@ use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use raypencil::cast::{BeamReturn, BeamReturns, FirstHit};
-use raypencil::pattern::{Keep, Returns};
+use raypencil::pattern::{EchoLight, Keep, Returns};
 use raypencil::{FaceId, Reading, Side};
 
 use crate::array::Arrays;
@@ -36,7 +36,7 @@ impl KeepArgument {
 }
 
 /// The returns of beams, from the ranges and cosines of their rays, (beams, rays of a beam): arrays by the names of the command's files
-/// without `return.`. `beams` is the shape of the beams.
+/// without `return.`. `beams` is the shape of the beams; `light` the reflectivity of surfaces and the extinction of the air, 1/m.
 #[pyfunction]
 pub(crate) fn beam_returns<'py>(
     py: Python<'py>,
@@ -46,10 +46,13 @@ pub(crate) fn beam_returns<'py>(
     beams: Vec<usize>,
     keep: KeepArgument,
     separation_m: f64,
+    light: (f64, f64),
 ) -> PyResult<Bound<'py, PyDict>> {
     let failed = |failure: Failure| failure.into_exception(py);
     let wanted = Returns { keep: keep.keep().map_err(failed)?, separation_m };
     wanted.validate("returns").map_err(|error| failed(error.into()))?;
+    let echo = EchoLight { reflectivity: light.0, extinction_per_m: light.1 };
+    echo.validate("light").map_err(|error| failed(error.into()))?;
     let [ranges, cosines] =
         [ranges.as_array(), cosines.as_array()].map(|array| array.iter().copied().collect::<Vec<f64>>());
     if weights.is_empty() || ranges.len() != cosines.len() || ranges.len() % weights.len() != 0 {
@@ -64,7 +67,7 @@ pub(crate) fn beam_returns<'py>(
     let returns = watched(py, None, move |_| {
         let first: Vec<Reading<FirstHit>> =
             ranges.iter().zip(&cosines).map(|(&range, &cos)| read(range, cos)).collect();
-        Ok(BeamReturns::of_first(&first, wanted, &weights))
+        Ok(BeamReturns::of_first(&first, wanted, (&weights, &echo)))
     })?;
     arrays_of(&returns, &beams).into_dict(py)
 }

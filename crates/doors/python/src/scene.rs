@@ -207,6 +207,8 @@ impl SceneCore {
                 }
                 arrays.set_item("separation_m", separation_m)?;
             }
+            arrays.set_item("reflectivity", set.echo.reflectivity)?;
+            arrays.set_item("extinction_per_m", set.echo.extinction_per_m)?;
             dict.set_item(&set.name, arrays)?;
         }
         Ok(dict)

@@ -78,6 +78,8 @@ poses = [{ time_s = 0, position_m = [-2, 0.5, 0.5] }, { time_s = 1, position_m =
     command("cast", DATA / "rays/cube.obj", "scan.toml", "--bag", "velodyne", "-o", "cast")
     assert check(tmp_path / "ours", tmp_path / "cast/cloud-sensor.pcd", frame="sensor")
     assert not check(tmp_path / "ours", tmp_path / "cast/cloud-sensor.pcd", frame="start")
+    assert check(tmp_path / "ours", tmp_path / "cast/cloud-end.pcd", frame="end")
+    assert "declare --frame end" in str(check(tmp_path / "ours", tmp_path / "cast/cloud-end.pcd", frame="start").why)
     bag = tmp_path / "cast/rosbag/rosbag_0.mcap"
     assert check(tmp_path / "ours", bag, frame="sensor", topic="/points", message=1)
     with pytest.raises(RaypencilError, match="topic /points: 1 cloud, and none of number 2; expected 1 to 1"):

@@ -167,19 +167,22 @@ def test_sets_of_rays_are_arrays_and_answered_as_by_the_command(command: Command
 
 def test_returns_of_beams_are_those_of_the_files(command: Command, tmp_path: Path) -> None:
     grid = "{ grid = { columns = 12, rows = 6, width_deg = 90, height_deg = 50 } }"
-    for keep in ("first", "strongest", "last", 2):
+    # Air so thick that it decides which return is the strongest.
+    for keep, extinction in [("first", 0.0), ("strongest", 0.0), ("strongest", 0.75), ("last", 0.0), (2, 0.0)]:
         asked = f"{{ keep = {keep!r}, separation_m = 0.25 }}"
         text = SMALL + (
             f'[[rays]]\nname = "wide"\ncone = {{ of = {grid}, divergence_mrad = 60, rings = 2, returns = {asked} }}\n'
-            "position_m = [0, 0, 1.2]\npitch_down_deg = 30\n"
+            f"position_m = [0, 0, 1.2]\npitch_down_deg = 30\nreflectivity = 0.5\nextinction_per_m = {extinction}\n"
         ).replace("'", '"')
         (tmp_path / "wide.toml").write_text(text)
-        command("cast", "wide.toml", "-o", f"of_{keep}")
+        folder = f"of_{keep}_{extinction}"
+        command("cast", "wide.toml", "-o", folder)
         scene = Scene(text)
         wide = scene.ray_sets["wide"]
         assert wide.returns == raypencil.Returns(keep, 0.25)
+        assert (wide.reflectivity, wide.extinction_per_m) == (0.5, extinction)
         found = wide.beam_returns(raypencil.cast(scene, wide.rays))
-        files = sorted((tmp_path / f"of_{keep}").rglob("return.*.npy"))
+        files = sorted((tmp_path / folder).rglob("return.*.npy"))
         assert sorted(found) == [file.name.split(".")[1] for file in files] and len(files) == 11
         for file in files:
             own, stored = found[file.name.split(".")[1]], np.load(file)

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 use raypencil_referee::{CastHit, CastMeeting, DecidedBy, ExactCast, Margins, SidedFace};
+use raypencil_scene::pattern::EchoLight;
 use raypencil_scene::{CastRay, FaceId, Progress, Reading, Side, Sides, Triangles};
 use raypencil_tracer::{CastTraverser, TracedHit, TracerCast};
 
@@ -44,9 +45,9 @@ pub struct FirstHit {
 }
 
 impl FirstHit {
-    /// The light of a small spot on a diffuse surface: abs(cos psi) / R^2, relative, without air and of one reflectivity.
-    pub fn light(&self) -> f64 {
-        self.cos_incidence.abs() / (self.range * self.range)
+    /// The light of a small spot on a diffuse surface, relative: abs(cos psi) / R^2, and of it what surface and air leave.
+    pub fn light(&self, echo: &EchoLight) -> f64 {
+        self.cos_incidence.abs() / (self.range * self.range) * echo.left(self.range)
     }
 }
 

@@ -203,7 +203,8 @@ pub fn write_scan_bag(
     form: BagForm,
     origin: [f64; 3],
 ) -> Result<(), FileError> {
-    let mut bag = ScanBag::create(folder, set, form, origin)?;
+    let first = set.times.iter().flatten().copied().reduce(f64::min).unwrap_or(0.0);
+    let mut bag = ScanBag::create(folder, (first, &set.mounting), form, origin)?;
     bag.add(answers, set)?;
     bag.finish()
 }
@@ -223,29 +224,27 @@ pub(crate) struct ScanBag<'a> {
 }
 
 impl<'a> ScanBag<'a> {
-    /// Begins a bag of the scans of a set.
+    /// Begins a bag of the scans of a set, with the time of its first ray.
     pub(crate) fn create(
         folder: &'a Path,
-        set: &'a NamedRaySet,
+        (first, mounting): (f64, &'a Mounting),
         form: BagForm,
         origin: [f64; 3],
     ) -> Result<Self, FileError> {
-        let first = set.times.iter().flatten().copied().reduce(f64::min).unwrap_or(0.0);
-        let begin = match &set.mounting {
+        let begin = match mounting {
             Mounting::Fixed(_) => first,
             Mounting::Moving(poses) => first.min(poses.span_s()[0]),
         };
         let later = (FIRST_S - begin).max(0.0);
         let bag = BagWriter::create(folder)?;
         let mesh_frame = if origin == [0.0; 3] { MAP } else { MESH };
-        let mut begun =
-            Self { folder, bag, mounting: &set.mounting, form, mesh_frame, later, told: f64::NEG_INFINITY };
+        let mut begun = Self { folder, bag, mounting, form, mesh_frame, later, told: f64::NEG_INFINITY };
         let at = begun.at(begin);
         let mut transforms = Vec::new();
         if mesh_frame == MESH {
             transforms.push(transform(at, [MAP, MESH], &Pose::from_position(origin.into())));
         }
-        if let Mounting::Fixed(pose) = &set.mounting {
+        if let Mounting::Fixed(pose) = mounting {
             transforms.push(transform(at, [mesh_frame, SENSOR], pose));
         }
         if !transforms.is_empty() {
@@ -263,7 +262,7 @@ impl<'a> ScanBag<'a> {
         let returns = BeamReturns::of(answers, scan);
         let (_, own_bytes) = self.form.fields.layout();
         let point_bytes = own_bytes + if returns.is_some() { RETURN_BYTES } else { 0 };
-        let count = spots(answers, returns.as_ref()).len() as u64;
+        let count = spots(answers, returns.as_ref(), &scan.echo).len() as u64;
         if count * u64::from(point_bytes) > u64::from(u32::MAX) {
             let found = format!("{count} points of {point_bytes} bytes");
             return Err(FileError::Cloud(Fault::new("points", found, "at most 4 GiB").in_file(self.folder)));
@@ -345,8 +344,8 @@ fn cloud(
         bytes.extend(spot.of_return.iter().flat_map(SpotReturn::driver_bytes));
         bytes
     };
-    let each = || spots(answers, returns).zip(places.rings.iter().copied());
-    let has_all = spots(answers, returns).all(|spot| spot.read.hit().is_some());
+    let each = || spots(answers, returns, &set.echo).zip(places.rings.iter().copied());
+    let has_all = spots(answers, returns, &set.echo).all(|spot| spot.read.hit().is_some());
     let (data, height, width) = match is_dense {
         true => {
             let hits = each().filter(|(spot, _)| spot.read.hit().is_some());

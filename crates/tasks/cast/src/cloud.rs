@@ -1,14 +1,16 @@
 //! The points that are hit, as point clouds: PLY and PCD.
 
+use std::io::Write;
 use std::path::Path;
 
 use glam::DVec3;
-use raypencil_files::{FileError, write_atomically};
+use raypencil_files::{Fault, FileError, write_atomically};
 use raypencil_referee::Margins;
-use raypencil_scene::pattern::Mounting;
+use raypencil_scene::pattern::{EchoLight, Mounting};
 use raypencil_scene::{NamedRaySet, Pose, Reading};
 
 use crate::answers::{Answers, FirstHit};
+use crate::pcd_data::PcdData;
 use crate::returns::{BeamReturn, BeamReturns};
 
 /// Stands for "no face" in a PCD file, whose fields of whole numbers have no NaN.
@@ -59,12 +61,13 @@ impl SpotReturn {
 pub(crate) fn spots<'a>(
     answers: &'a Answers,
     returns: Option<&'a BeamReturns>,
+    echo: &'a EchoLight,
 ) -> impl ExactSizeIterator<Item = Spot<'a>> + 'a {
     let count = returns.map_or(answers.first.len(), |returns| returns.told().len());
     (0..count).map(move |index| match returns {
         None => {
             let read = borrowed(&answers.first[index]);
-            let intensity = read.hit().map_or(f64::NAN, |hit| hit.light());
+            let intensity = read.hit().map_or(f64::NAN, |hit| hit.light(echo));
             Spot { ray: index, read, intensity, of_return: None }
         }
         Some(returns) => spot_of_return(answers, returns, index),
@@ -169,7 +172,7 @@ pub fn write_ply(
              property double x\nproperty double y\nproperty double z\nproperty uint face\n\
              property double cos_incidence\n{of_returns}{of_margins}end_header\n",
         )?;
-        for spot in spots(answers, returns) {
+        for spot in spots(answers, returns, &EchoLight::default()) {
             let Some(hit) = spot.read.hit() else { continue };
             for value in hit.point.to_array() {
                 file.write_all(&value.to_le_bytes())?;
@@ -205,8 +208,10 @@ pub enum CloudFrame {
     Mesh,
     /// The sensor's own at the time at which each ray is fired: as its driver gives them, distorted by the sensor's motion.
     Sensor,
-    /// The sensor's own at its first pose: without that distortion.
+    /// The sensor's own when it fires the first ray: without that distortion.
     SensorAtStart,
+    /// The sensor's own when it fires the last ray: without it as well.
+    SensorAtEnd,
 }
 
 impl CloudFrame {
@@ -215,7 +220,7 @@ impl CloudFrame {
         match mounting {
             here if *here == Mounting::HERE => &[Self::Mesh],
             Mounting::Fixed(_) => &[Self::Mesh, Self::Sensor],
-            Mounting::Moving(_) => &[Self::Mesh, Self::Sensor, Self::SensorAtStart],
+            Mounting::Moving(_) => &Self::ALL,
         }
     }
 
@@ -225,11 +230,12 @@ impl CloudFrame {
             Self::Mesh => "cloud.pcd",
             Self::Sensor => "cloud-sensor.pcd",
             Self::SensorAtStart => "cloud-start.pcd",
+            Self::SensorAtEnd => "cloud-end.pcd",
         }
     }
 
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Mesh, Self::Sensor, Self::SensorAtStart];
+    pub const ALL: [Self; 4] = [Self::Mesh, Self::Sensor, Self::SensorAtStart, Self::SensorAtEnd];
 
     /// The word of options.
     pub fn option(self) -> &'static str {
@@ -237,6 +243,7 @@ impl CloudFrame {
             Self::Mesh => "mesh",
             Self::Sensor => "sensor",
             Self::SensorAtStart => "start",
+            Self::SensorAtEnd => "end",
         }
     }
 
@@ -245,12 +252,13 @@ impl CloudFrame {
         match self {
             Self::Mesh => "the mesh",
             Self::Sensor => "the sensor, at the time of each ray",
-            Self::SensorAtStart => "the sensor, at its first pose",
+            Self::SensorAtStart => "the sensor, at the time of the first ray",
+            Self::SensorAtEnd => "the sensor, at the time of the last ray",
         }
     }
 }
 
-/// Writes one point for each ray: PCD 0.7, binary, organised. Where nothing is hit x, y, z, `intensity` and `range` are NaN, and
+/// Writes one point for each ray: PCD 0.7, binary or compressed, organised. Where nothing is hit x, y, z, `intensity` and `range` are NaN, and
 /// `face` is 4294967295. What is too near is no point either: `range` is -Inf. (Point Cloud Library, "The PCD (Point Cloud Data)
 /// file format"; REP-117)
 ///
@@ -260,7 +268,7 @@ impl CloudFrame {
 /// | field | type | content |
 /// | --- | --- | --- |
 /// | x, y, z | float32 | the point, in the mesh's unit |
-/// | `intensity` | float32 | cos(psi) / R^2: the light of a small spot on a diffuse surface, relative, without air |
+/// | `intensity` | float32 | r abs(cos psi) / R^2 e^(-2 sigma R): the light of a small spot on a diffuse surface, relative; r and sigma are those of the set |
 /// | `ring` | uint16 | rank of the channel by its elevation, the lowest is 0; without elevations the channel |
 /// | `time` | float32 | seconds after the first ray of the set |
 /// | `timestamp` | float64 | seconds, as the set has them; 0 for sets without times |
@@ -277,20 +285,21 @@ impl CloudFrame {
 ///
 /// Comments `# map_origin_m X Y Z` and `# map_system NAME` name the map in which the mesh's frame lies.
 ///
-/// VIEWPOINT has the pose of the sensor in the mesh's frame, its first one, if the points are in the sensor's frame: viewers that
-/// apply it show the cloud in its place. For points in the mesh's frame it is the identity.
+/// VIEWPOINT has the pose of the sensor in the mesh's frame, if the points are in the sensor's frame: that of the last ray for
+/// [`CloudFrame::SensorAtEnd`], and else that of the first. Viewers that apply it show the cloud in its place. For points in the mesh's frame it is the
+/// identity.
 ///
 /// # Errors
-/// The file cannot be written; the message names it.
+/// The file cannot be written, or points that are to be compressed take more than 4 GiB; the message names it.
 pub fn write_pcd(
     path: impl AsRef<Path>,
     answers: &Answers,
     (set, returns): (&NamedRaySet, Option<&BeamReturns>),
-    frame: CloudFrame,
+    (frame, data): (CloudFrame, PcdData),
     map: &CloudMap,
 ) -> Result<(), FileError> {
     let map = map.comments("#");
-    let spots = spots(answers, returns);
+    let spots = spots(answers, returns, &set.echo);
     let count = spots.len() as u64;
     let (shape, rays_of_place, places) = places(set, returns);
     let width = shape.last().copied().unwrap_or(1) * places;
@@ -321,28 +330,29 @@ pub fn write_pcd(
     let word = |number: u64| u16::try_from(number).unwrap_or(u16::MAX);
     let time_of = |index: usize| set.times.as_ref().map_or(0.0, |times| times[index]);
     let first_time = set.times.iter().flatten().copied().reduce(f64::min).unwrap_or(0.0);
-    let start = set.mounting.first();
+    let [start, end] = set.mounting.ends(set.times.as_deref());
     let placed = |index: usize, point: DVec3| match frame {
         CloudFrame::Mesh => point,
         CloudFrame::Sensor => set.mounting.at(time_of(index)).unwrap_or(start).inverse() * point,
         CloudFrame::SensorAtStart => start.inverse() * point,
+        CloudFrame::SensorAtEnd => end.inverse() * point,
     };
     let Pose { position, rotation } = match frame {
         CloudFrame::Mesh => Pose::IDENTITY,
         CloudFrame::Sensor | CloudFrame::SensorAtStart => start,
+        CloudFrame::SensorAtEnd => end,
     };
     let rotation = rotation.normalize();
     let ([x, y, z], [qx, qy, qz, qw]) = (position.to_array(), rotation.to_array());
-    write_atomically(path, |file| {
-        write!(
-            file,
-            "# .PCD v0.7 - Point Cloud Data file format\n# raypencil cast, frame of {}\n{map}VERSION 0.7\n\
-             FIELDS x y z intensity ring time timestamp channel range face{more_fields}{margin_fields}\n\
-             SIZE 4 4 4 4 2 4 8 2 4 4{more_sizes}{margin_sizes}\nTYPE F F F F U F F U F U{more_types}{margin_types}\n\
-             COUNT 1 1 1 1 1 1 1 1 1 1{more_counts}{margin_counts}\n\
-             WIDTH {width}\nHEIGHT {height}\nVIEWPOINT {x} {y} {z} {qw} {qx} {qy} {qz}\nPOINTS {count}\nDATA binary\n",
-            frame.words()
-        )?;
+    let sizes = format!("4 4 4 4 2 4 8 2 4 4{more_sizes}{margin_sizes}");
+    let bytes_of_fields: Vec<usize> = sizes.split(' ').filter_map(|size| size.parse().ok()).collect();
+    let point_bytes = bytes_of_fields.iter().sum::<usize>() as u64;
+    if count * point_bytes > data.most() {
+        let found = format!("{count} points of {point_bytes} bytes");
+        let fault = Fault::new("points", found, "at most 4 GiB, for compressed ones");
+        return Err(FileError::Cloud(fault.in_file(path.as_ref())));
+    }
+    let write_points = |file: &mut dyn Write| {
         for Spot { ray, read, intensity, of_return } in spots {
             let (point, range, face) = match read {
                 Reading::Hit(hit) => (placed(ray, hit.point), hit.range, hit.face.0),
@@ -382,6 +392,19 @@ pub fn write_pcd(
             }
         }
         Ok(())
+    };
+    write_atomically(path.as_ref(), |file| {
+        write!(
+            file,
+            "# .PCD v0.7 - Point Cloud Data file format\n# raypencil cast, frame of {}\n{map}VERSION 0.7\n\
+             FIELDS x y z intensity ring time timestamp channel range face{more_fields}{margin_fields}\n\
+             SIZE {sizes}\nTYPE F F F F U F F U F U{more_types}{margin_types}\n\
+             COUNT 1 1 1 1 1 1 1 1 1 1{more_counts}{margin_counts}\n\
+             WIDTH {width}\nHEIGHT {height}\nVIEWPOINT {x} {y} {z} {qw} {qx} {qy} {qz}\nPOINTS {count}\nDATA {}\n",
+            frame.words(),
+            data.word()
+        )?;
+        data.write(file, &bytes_of_fields, write_points)
     })
 }
 

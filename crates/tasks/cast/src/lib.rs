@@ -10,6 +10,7 @@
 //! comparison/    another program's first hits against the exact ones
 //! page           the answers as a page that answers when asked
 //! pack/          packs of rays: a mesh, rays, exact answers; the check of a candidate, and what explains its mistakes
+//! pcd_data       how the points of PCD are stored: as they are, or compressed
 //! range_picture  ranges as a picture, and the points from above
 //! returns        the returns of beams with a width
 //! warnings       what looks wrong in rays and their mesh
@@ -46,6 +47,7 @@ mod layout;
 mod pack;
 mod page;
 mod page_solid;
+mod pcd_data;
 mod range_picture;
 mod returns;
 mod scans;
@@ -71,11 +73,12 @@ pub use pack::{
     read_stated, stated_points, write_ray_pack, write_scan_pack,
 };
 pub use page::{CastPage, ComparedHits, write_cast_page};
+pub use pcd_data::PcdData;
 pub use range_picture::{range_picture, top_picture};
 pub use raypencil_files::{RayArray, rays_from_bytes, read_rays};
 pub use raypencil_rosbag::CloudChoice;
 pub use returns::{BeamReturn, BeamReturns, Footprint};
-pub use scans::{ScansWritten, write_scans};
+pub use scans::{ScansWritten, SetOfScans, write_scans};
 pub use text::{counts_text, ray_json, ray_text};
 pub use warnings::{CastSeen, cast_warnings, cast_warnings_of, open_edges};
 pub use write::{CastSource, write_answers, write_set};

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use raypencil_report::{count, counted};
-use raypencil_scene::pattern::{Keep, Returns};
+use raypencil_scene::pattern::{EchoLight, Keep, Returns};
 use raypencil_scene::{NamedRaySet, Reading};
 use serde_json::{Value, json};
 
@@ -20,8 +20,8 @@ pub struct BeamReturn {
     pub range: f64,
     /// Mean of the ranges of its rays, weighted by their light.
     pub mean_range: f64,
-    /// Light: the sum of w abs(cos psi) / R^2 over its rays in their order, w being a ray's share of the beam's power. Relative, without air
-    /// and of one reflectivity.
+    /// Light: the sum of w r abs(cos psi) / R^2 e^(-2 sigma R) over its rays in their order, w being a ray's share of the beam's power, r and
+    /// sigma those of the set. Relative.
     pub strength: f64,
     /// Number of its rays.
     pub rays: u32,
@@ -64,16 +64,20 @@ pub struct BeamReturns {
 impl BeamReturns {
     /// The returns of a set; `None` if it asks for none.
     pub fn of(answers: &Answers, set: &NamedRaySet) -> Option<Self> {
-        Some(Self::of_first(&answers.first, set.returns?, set.weights.as_ref()?))
+        Some(Self::of_first(&answers.first, set.returns?, (set.weights.as_ref()?, &set.echo)))
     }
 
     /// The same from what is read by each ray; beams have as many rays as there are weights. Ranges and cosines alone decide.
-    pub fn of_first(first: &[Reading<FirstHit>], wanted: Returns, weights: &[f64]) -> Self {
+    pub fn of_first(
+        first: &[Reading<FirstHit>],
+        wanted: Returns,
+        (weights, echo): (&[f64], &EchoLight),
+    ) -> Self {
         let rays_of_beam = weights.len();
         let beams: Vec<Beam> = first
             .par_chunks(rays_of_beam)
             .enumerate()
-            .map(|(index, reads)| Beam::of(reads, index * rays_of_beam, weights, &wanted))
+            .map(|(index, reads)| Beam::of(reads, index * rays_of_beam, (weights, echo), &wanted))
             .collect();
         let most = wanted.most() as usize;
         let mut all = Self {
@@ -183,6 +187,11 @@ pub(crate) fn keep_of_json(value: &Value) -> Option<Keep> {
     }
 }
 
+/// What surfaces and air leave of the light, as files have it.
+pub(crate) fn echo_json(echo: &EchoLight) -> Value {
+    json!({ "reflectivity": echo.reflectivity, "extinctionPerM": echo.extinction_per_m })
+}
+
 /// The returns of one beam.
 struct Beam {
     told: Vec<BeamReturn>,
@@ -191,7 +200,12 @@ struct Beam {
 }
 
 impl Beam {
-    fn of(reads: &[Reading<FirstHit>], first_ray: usize, weights: &[f64], wanted: &Returns) -> Self {
+    fn of(
+        reads: &[Reading<FirstHit>],
+        first_ray: usize,
+        light: (&[f64], &EchoLight),
+        wanted: &Returns,
+    ) -> Self {
         let mut hits: Vec<(usize, &FirstHit)> =
             reads.iter().enumerate().filter_map(|(ray, read)| Some((ray, read.hit()?))).collect();
         // Of equal ranges the ray that comes first: the order is the same whatever sorts.
@@ -204,7 +218,7 @@ impl Beam {
             // Rays of a cone run from its middle outwards, ring by ring.
             group.sort_by_key(|(ray, _)| *ray);
             group.iter().for_each(|(ray, _)| of_rays[*ray] = number);
-            all.push(one_return(group, number, first_ray, weights));
+            all.push(one_return(group, number, first_ray, light));
         }
         let too_near = reads.iter().filter(|read| matches!(read, Reading::TooNear)).count() as u32;
         let footprint = Footprint { returns: all.len() as u32, hits: hits.len() as u32, too_near };
@@ -212,11 +226,16 @@ impl Beam {
     }
 }
 
-fn one_return(group: &[(usize, &FirstHit)], number: u32, first_ray: usize, weights: &[f64]) -> BeamReturn {
+fn one_return(
+    group: &[(usize, &FirstHit)],
+    number: u32,
+    first_ray: usize,
+    (weights, echo): (&[f64], &EchoLight),
+) -> BeamReturn {
     let (leading, hit) = group[0];
     let (mut strength, mut times_range) = (0.0, 0.0);
     for (ray, hit) in group {
-        let light = weights[*ray] * hit.light();
+        let light = weights[*ray] * hit.light(echo);
         strength += light;
         times_range += light * hit.range;
     }

@@ -8,13 +8,15 @@ use raypencil_files::{
 use raypencil_mesh_io::{DemFacts, FileFacts, FileFrame, FileUnits, UpAxis};
 use raypencil_referee::Margin;
 use raypencil_report::VERSION;
+use raypencil_scene::pattern::EchoLight;
 use raypencil_scene::{CastRay, NamedRaySet, Sides, Triangles};
 use serde_json::{Value, json};
 
 use crate::answers::{AllColumns, Answers, FirstHit, GroupAtT, side_number};
 use crate::cloud::{CloudFrame, CloudMap, write_pcd, write_ply};
+use crate::pcd_data::PcdData;
 use crate::range_picture::{range_picture, top_picture};
-use crate::returns::{BeamReturn, BeamReturns};
+use crate::returns::{BeamReturn, BeamReturns, echo_json};
 use crate::warnings::cast_warnings;
 
 /// Where mesh and rays come from, for the summary.
@@ -80,11 +82,12 @@ pub fn write_answers(
 ///
 /// | file | content |
 /// | --- | --- |
+/// | `origin.npy`, `direction.npy` | f8, (..., 3): each ray as it is fired, in the mesh's frame |
 /// | `time.npy`, if the set has times | f8: time at which each ray is fired, seconds |
 /// | `weight.npy`, if rays are parts of beams | f8, (k): shares of a beam's power along the last dimension |
 /// | `return.*.npy`, if the set asks for returns | the returns of its beams, as `docs/guide/lidar.md` lists them |
 /// | `cloud.ply`, `cloud.pcd` | the points: [`write_ply`], [`write_pcd`] |
-/// | `cloud-sensor.pcd`, `cloud-start.pcd` | the same in frames of the sensor: [`CloudFrame`] |
+/// | `cloud-sensor.pcd`, `cloud-start.pcd`, `cloud-end.pcd` | the same in frames of the sensor: [`CloudFrame`] |
 /// | `range.png`, for two dimensions, and `top.png` | pictures, if anything is hit: [`range_picture`], [`top_picture`] |
 ///
 /// # Errors
@@ -94,12 +97,19 @@ pub fn write_set(
     answers: &Answers,
     (mesh, set, sides): (&Triangles, &NamedRaySet, Sides),
     source: &CastSource,
+    pcd: PcdData,
 ) -> Result<PathBuf, FolderError> {
     let summary = begin_output_folder(folder, "summary.json")?;
     let rays = set.set.rays();
     let (mut arrays, mut document) =
         write_arrays(folder, answers, (mesh, &set.shape, rays, sides), Some(set), source)?;
     let mut more = ArrayFolder { folder, arrays: &mut arrays };
+    let with_three: Vec<u64> = set.shape.iter().copied().chain([3]).collect();
+    let vectors = |of: fn(&CastRay) -> glam::DVec3| -> Vec<f64> {
+        rays.iter().flat_map(|ray| of(ray).to_array()).collect()
+    };
+    more.write("origin", &with_three, &vectors(|ray| ray.origin))?;
+    more.write("direction", &with_three, &vectors(|ray| ray.direction))?;
     if let Some(times) = &set.times {
         more.write("time", &set.shape, times)?;
     }
@@ -115,7 +125,7 @@ pub fn write_set(
     write_ply(folder.join("cloud.ply"), answers, returns.as_ref(), &map)?;
     let mut clouds = vec!["cloud.ply"];
     for frame in CloudFrame::of(&set.mounting) {
-        write_pcd(folder.join(frame.file()), answers, (set, returns.as_ref()), *frame, &map)?;
+        write_pcd(folder.join(frame.file()), answers, (set, returns.as_ref()), (*frame, pcd), &map)?;
         clouds.push(frame.file());
     }
     let mut pictures = Vec::new();
@@ -126,6 +136,9 @@ pub fn write_set(
         pictures.push(name);
     }
     document["rays"]["name"] = json!(set.name);
+    if set.echo != EchoLight::default() {
+        document["rays"]["light"] = echo_json(&set.echo);
+    }
     document["clouds"] = json!(clouds);
     document["pictures"] = json!(pictures);
     finish(summary, arrays, document)

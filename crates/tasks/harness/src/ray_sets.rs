@@ -6,7 +6,8 @@
 use std::path::{Path, PathBuf};
 
 use raypencil_cast::{
-    Answers, CastCounts, CastSource, Comparison, Questions, Stated, cast_with, compare_with, write_set,
+    Answers, CastCounts, CastSource, Comparison, PcdData, Questions, Stated, cast_with, compare_with,
+    write_set,
 };
 use raypencil_files::FolderError;
 use raypencil_referee::ExactCast;
@@ -117,7 +118,13 @@ pub(crate) fn write_ray_set(
     folder: &Path,
 ) -> Result<PathBuf, FolderError> {
     let source = source_of(subject, set);
-    write_set(&folder.join("rays").join(&set.name), answers, (mesh, set, set.set.sides()), &source)
+    write_set(
+        &folder.join("rays").join(&set.name),
+        answers,
+        (mesh, set, set.set.sides()),
+        &source,
+        PcdData::Binary,
+    )
 }
 
 /// Answers all sets of a scene. `renderers` are the names of those that take part.

@@ -82,7 +82,7 @@ pub use inputs::{InputFile, SceneInputs};
 pub use load::{LoadedScene, MAX_TOML_BYTES, check_settings, load, load_sharing, load_text, load_text_with};
 pub use overrides::Overrides;
 pub use ray_scene::{RayScene, load_ray_scene};
-pub use ray_sets::{LoadedRaySets, ray_sets_from_text, read_ray_sets};
+pub use ray_sets::{LoadedRaySets, LoadedSweeps, ray_sets_from_text, read_ray_sets, read_sweeps};
 pub use raypencil_files::quoted;
 pub use raypencil_rosbag::PoseChoice;
 pub use resolved::write::write_resolved;

@@ -5,8 +5,9 @@ use std::path::Path;
 use toml::Spanned;
 
 use raypencil_files::{combined_sha256_hex, hex_digits, sha256};
-use raypencil_scene::NamedRaySet;
+use raypencil_scene::{HeadSweep, NamedRaySet};
 
+use crate::digest::NamedDigest;
 use crate::load::read_toml;
 use crate::parse::key::Key;
 use crate::parse::rays::RaysKeys;
@@ -54,6 +55,32 @@ pub fn read_ray_sets(path: &Path) -> Result<LoadedRaySets, SceneIoError> {
 /// As [`read_ray_sets`].
 pub fn ray_sets_from_text(text: &str, file: &Path) -> Result<LoadedRaySets, SceneIoError> {
     let source = Source::unchanged(file, text);
+    let (sets, of_files) = source.ray_sets(&tables(&source)?)?;
+    Ok(LoadedRaySets { sets, sha256: digest(text, of_files) })
+}
+
+/// The sets of spinning heads, whose rays are made when they are asked for, and the digest of what defines them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadedSweeps {
+    /// The sets, in the order of the file: at least one.
+    pub sweeps: Vec<HeadSweep>,
+    /// As [`LoadedRaySets::sha256`].
+    pub sha256: String,
+}
+
+/// Reads a file as [`read_ray_sets`] does, and makes no rays.
+///
+/// # Errors
+/// As [`read_ray_sets`], and names a set that is of no spinning head.
+pub fn read_sweeps(path: &Path) -> Result<LoadedSweeps, SceneIoError> {
+    let text = read_toml(path)?;
+    let source = Source::unchanged(path, &text);
+    let (sweeps, of_files) = source.sweeps(&tables(&source)?)?;
+    Ok(LoadedSweeps { sweeps, sha256: digest(&text, of_files) })
+}
+
+/// The tables of a file that has nothing else.
+fn tables(source: &Source<'_>) -> Result<Vec<Spanned<RaysKeys>>, SceneIoError> {
     let keys: FileKeys = source.deserialize()?;
     if let Some(version) = keys.version.filter(|version| *version.get_ref() != 1) {
         let message = format!("`version` is {}; expected 1, the only version there is", version.get_ref());
@@ -63,14 +90,17 @@ pub fn ray_sets_from_text(text: &str, file: &Path) -> Result<LoadedRaySets, Scen
     if tables.is_empty() {
         return Err(source.error(0..0, "there is no table `[[rays]]`; expected at least one"));
     }
-    let (sets, of_files) = source.ray_sets(&tables)?;
+    Ok(tables)
+}
+
+/// SHA-256 in hexadecimal of a file's text and of the files that it names.
+fn digest(text: &str, of_files: Vec<NamedDigest>) -> String {
     let own = sha256(text.as_bytes());
-    let sha256 = match of_files.len() {
+    match of_files.len() {
         0 => hex_digits(&own),
         _ => {
             let of_files = of_files.into_iter().map(|(_, digest)| digest);
             combined_sha256_hex(&std::iter::once(own).chain(of_files).collect::<Vec<_>>())
         }
-    };
-    Ok(LoadedRaySets { sets, sha256 })
+    }
 }

@@ -9,6 +9,7 @@
 //! reduced by whole quarter turns without rounding: the bits are the same everywhere, and those of 90 degrees are exact.
 
 mod cone;
+mod echo;
 mod grid;
 mod poses;
 mod presets;
@@ -18,6 +19,7 @@ mod spinning;
 use glam::DVec3;
 
 pub use cone::Cone;
+pub use echo::EchoLight;
 pub use grid::{Grid, Spacing};
 pub use poses::{Mounting, TimedPose, TimedPoses};
 pub use presets::{GRID_PRESETS, SPINNING_PRESETS};

@@ -144,6 +144,26 @@ impl Mounting {
         }
     }
 
+    /// The poses at the first and at the last of the times at which rays are fired; without times that of the first of all.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use raypencil_scene::Pose;
+    /// use raypencil_scene::pattern::{Mounting, TimedPose, TimedPoses};
+    ///
+    /// let at = |time_s: f64| TimedPose { time_s, pose: Pose::from_position(DVec3::X * time_s) };
+    /// let mounting = Mounting::Moving(TimedPoses::new(vec![at(0.0), at(9.0)], "poses")?);
+    /// // Neither the order of the times nor the poses before and after them matter.
+    /// let ends = mounting.ends(Some(&[3.0, 2.0, 5.0, 4.0]));
+    /// assert_eq!(ends.map(|pose| pose.position.x), [2.0, 5.0]);
+    /// # Ok::<(), raypencil_scene::SceneError>(())
+    /// ```
+    pub fn ends(&self, times: Option<&[f64]>) -> [Pose; 2] {
+        let times = || times.into_iter().flatten().copied();
+        [times().reduce(f64::min), times().reduce(f64::max)]
+            .map(|time| time.and_then(|time| self.at(time)).unwrap_or_else(|| self.first()))
+    }
+
     /// The same in a frame in which its own frame has this pose.
     #[must_use]
     pub fn moved_by(&self, frame: &Pose) -> Self {
@@ -154,6 +174,12 @@ impl Mounting {
                 Self::Moving(TimedPoses { poses: poses.iter().map(moved).collect() })
             }
         }
+    }
+
+    /// A ray is fired before the first pose or after the last.
+    pub(crate) fn no_pose(field: &str, ray: u64, time: f64, [first, last]: [f64; 2]) -> SceneError {
+        let expected = format!("{first} to {last} s, the times of its poses");
+        SceneError::new(format!("{field}: time of ray {ray}"), format!("{time} s"), expected)
     }
 
     /// The pattern in the mesh's frame. `field` names it in messages.
@@ -177,15 +203,8 @@ impl Mounting {
             (Self::Moving(poses), times) => {
                 let times = times.iter().flatten();
                 for (index, (ray, &time)) in pattern.rays.iter_mut().zip(times).enumerate() {
-                    let pose = poses.at(time).ok_or_else(|| {
-                        let [first, last] = poses.span_s();
-                        let expected = format!("{first} to {last} s, the times of its poses");
-                        SceneError::new(
-                            format!("{field}: time of ray {index}"),
-                            format!("{time} s"),
-                            expected,
-                        )
-                    })?;
+                    let no_pose = || Self::no_pose(field, index as u64, time, poses.span_s());
+                    let pose = poses.at(time).ok_or_else(no_pose)?;
                     *ray = placed(&pose, ray);
                 }
             }

@@ -1,5 +1,7 @@
 //! A head that spins about z and fires its channels one after the other.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::{Mounting, PatternRays, check_ranges, check_rays, direction, sincos_deg};
@@ -97,10 +99,20 @@ impl Spinning {
     /// # Errors
     /// As [`Spinning::validate`].
     pub fn rays(&self, field: &str) -> Result<PatternRays, SceneError> {
+        self.rays_of(0..self.steps, field)
+    }
+
+    /// The rays of some firing sequences alone, as they are among those of all.
+    ///
+    /// # Errors
+    /// As [`Spinning::validate`].
+    pub fn rays_of(&self, sequences: Range<u64>, field: &str) -> Result<PatternRays, SceneError> {
         self.validate(field)?;
-        let count = self.steps as usize * self.channels.len();
+        let sequences = sequences.start.min(self.steps)..sequences.end.min(self.steps);
+        let steps = sequences.end.saturating_sub(sequences.start);
+        let count = steps as usize * self.channels.len();
         let (mut rays, mut times) = (Vec::with_capacity(count), Vec::with_capacity(count));
-        for step in 0..self.steps {
+        for step in sequences {
             for channel in &self.channels {
                 let turns = step as f64 + channel.firing_s / self.period_s;
                 let azimuth =
@@ -117,7 +129,7 @@ impl Spinning {
             }
         }
         Ok(PatternRays {
-            shape: vec![self.steps, self.channels.len() as u64],
+            shape: vec![steps, self.channels.len() as u64],
             rays,
             times: Some(times),
             weights: None,

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use raypencil::CastRay;
-use raypencil::cast::BagFields;
+use raypencil::cast::{BagFields, PcdData};
 use raypencil::io::{Setting, UpAxis};
 
-use crate::parsers::{bag_fields, named_file, number, ray, setting, up_axis};
+use crate::parsers::{bag_fields, named_file, number, pcd_data, ray, setting, up_axis};
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
@@ -82,8 +82,12 @@ pub(crate) struct Cast {
     #[arg(long, requires = "bag")]
     pub(crate) bag_dense: bool,
 
+    /// How the points of PCD files are stored. Without it: binary.
+    #[arg(long, value_name = "DATA", value_parser = pcd_data(), requires = "output")]
+    pub(crate) pcd: Option<PcdData>,
+
     /// Cast the set of a spinning head in scans of so many firing sequences, and write a cloud for each: DIR/scans/*.pcd, and with --bag
-    /// one bag of all. Answers of one scan at a time are in memory. There are no arrays and no page then.
+    /// one bag of all. Rays and answers of one scan at a time are in memory; of sets in a scene file the rays of all. There are no arrays and no page then.
     #[arg(long, value_name = "SEQUENCES", value_parser = clap::value_parser!(u64).range(1..), requires = "output")]
     #[arg(conflicts_with_all = ["all", "any", "margins", "with", "ray"])]
     pub(crate) scans: Option<u64>,

@@ -51,7 +51,7 @@ pub(crate) struct Check {
     pub(crate) no_faces: bool,
 
     /// Frame of the points of a cloud: that of the mesh, of the sensor when it fires each ray, as a driver gives them, or of the
-    /// sensor at the start of its scan. Without it: mesh.
+    /// sensor at the start or the end of its scan. Without it: mesh.
     #[arg(long, value_name = "FRAME", value_parser = cloud_frame())]
     pub(crate) frame: Option<CloudFrame>,
 

@@ -8,16 +8,16 @@ use std::path::{Path, PathBuf};
 
 use raypencil::cast::{
     Answers, BagForm, BeamReturns, CastPage, CastSource, DecidedCounts, PageScan, Questions, RayArray,
-    cast as answer, cast_warnings, counts_text, ray_json, ray_text, rays_from_bytes, write_answers,
-    write_cast_page, write_scan_bag, write_set,
+    SetOfScans, cast as answer, cast_warnings, counts_text, ray_json, ray_text, rays_from_bytes,
+    write_answers, write_cast_page, write_scan_bag, write_set,
 };
 use raypencil::io::{
-    FileError, FileFacts, FileFrame, FileUnits, Limits, LoadedRaySets, OutputFolder, PolygonFacts, RayScene,
-    begin_output_folder, bytes, file_warnings, hex_digits, load_ray_scene, read_ray_sets, read_triangles,
-    sha256,
+    FileError, FileFacts, FileFrame, FileUnits, Limits, LoadedRaySets, LoadedSweeps, OutputFolder,
+    PolygonFacts, RayScene, begin_output_folder, bytes, file_warnings, hex_digits, load_ray_scene,
+    read_ray_sets, read_sweeps, read_triangles, sha256,
 };
 use raypencil::survey::{Warning, WarningCode};
-use raypencil::{CastRay, NamedRaySet, Progress, Sides, Triangles};
+use raypencil::{CastRay, HeadSweep, NamedRaySet, Progress, Sides, Triangles};
 use serde_json::{Value, json};
 
 use crate::args::Cast;
@@ -37,6 +37,8 @@ enum Rays {
     Array(RayArray),
     /// The sets of a TOML file.
     Sets(Vec<NamedRaySet>),
+    /// The same of heads whose scans are asked for, and whose rays are not made yet.
+    Sweeps(Vec<HeadSweep>),
 }
 
 pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
@@ -55,10 +57,16 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
         origin,
     };
     let mesh = &mesh;
+    let of_scans: Vec<SetOfScans<'_>> = match &rays {
+        Rays::Array(_) => Vec::new(),
+        Rays::Sets(sets) => sets.iter().map(SetOfScans::Made).collect(),
+        Rays::Sweeps(sweeps) => sweeps.iter().map(SetOfScans::Sweep).collect(),
+    };
+    let sequences = command.scans.unwrap_or(u64::MAX);
     let count = match &rays {
         Rays::Array(array) => array.rays.len(),
         // One after the other.
-        Rays::Sets(sets) => sets.iter().map(|set| set.set.rays().len()).max().unwrap_or(0),
+        _ => of_scans.iter().map(|set| set.rays_at_a_time(sequences)).max().unwrap_or(0),
     };
     if command.bag.is_some() && matches!(rays, Rays::Array(_)) {
         let text = "--bag is for sets of rays, which have times and poses; expected RAYS that end in .toml, or a scene";
@@ -68,7 +76,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
         let text = "--scans is for the set of a spinning head; expected RAYS that end in .toml, or a scene";
         return Err(Trouble::Usage(text.into()));
     }
-    memory::ask_cast(count, mesh.faces().len(), command.scans.is_some())?;
+    memory::ask_cast(count, mesh.faces().len(), command.scans.is_some() && matches!(rays, Rays::Sets(_)))?;
     let folder = command.output.as_deref();
     let output = match folder {
         Some(folder) => {
@@ -77,8 +85,9 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
         }
         None => None,
     };
-    if let (Rays::Sets(sets), Some(sequences), Some(folder)) = (&rays, command.scans, folder) {
-        let outcome = scans::cast_scans(command, (mesh, sets), sequences, folder, &source, (&spinner, json))?;
+    if let (Some(sequences), Some(folder)) = (command.scans, folder) {
+        let sets = (mesh, of_scans.as_slice());
+        let outcome = scans::cast_scans(command, sets, sequences, folder, &source, (&spinner, json))?;
         output.map_or(Ok(()), OutputFolder::finish)?;
         return Ok(outcome);
     }
@@ -119,6 +128,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
         }
         Rays::Sets(sets) => {
             let mut results = Vec::new();
+            let pcd = command.pcd.unwrap_or_default();
             for set in sets {
                 let sides = if command.fronts_only { Sides::Fronts } else { set.set.sides() };
                 let answers = answer(mesh, set.set.rays(), sides, questions, &spinner);
@@ -137,7 +147,8 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
                         write_scan_bag(&folder.join("rosbag"), &answers, set, form, source.origin)?;
                     }
                 }
-                let written = folder.map(|folder| write_set(&folder, &answers, (mesh, set, sides), &source));
+                let written =
+                    folder.map(|folder| write_set(&folder, &answers, (mesh, set, sides), &source, pcd));
                 let summary = written.transpose()?;
                 results.push(Answered {
                     set: Some(&set.name),
@@ -152,6 +163,8 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
             }
             results
         }
+        // Their scans are written above.
+        Rays::Sweeps(_) => Vec::new(),
     };
     output.map_or(Ok(()), OutputFolder::finish)?;
     drop(spinner);
@@ -365,7 +378,7 @@ fn given(command: &Cast, spinner: &Spinner) -> Result<Given, Trouble> {
         }
         Some(path) => {
             spinner.stage(&format!("{}: reading", path.display()));
-            let (rays, digest) = read(path)?;
+            let (rays, digest) = read(path, command.scans.is_some())?;
             (rays, path.display().to_string(), Some(digest))
         }
     };
@@ -377,7 +390,11 @@ fn is_toml(path: &Path) -> bool {
 }
 
 /// The rays of a file, and their SHA-256 in hexadecimal: the sets of a `.toml`, else an array.
-fn read(path: &Path) -> Result<(Rays, String), Trouble> {
+fn read(path: &Path, in_scans: bool) -> Result<(Rays, String), Trouble> {
+    if is_toml(path) && in_scans {
+        let LoadedSweeps { sweeps, sha256 } = read_sweeps(path)?;
+        return Ok((Rays::Sweeps(sweeps), sha256));
+    }
     if is_toml(path) {
         let LoadedRaySets { sets, sha256 } = read_ray_sets(path)?;
         return Ok((Rays::Sets(sets), sha256));

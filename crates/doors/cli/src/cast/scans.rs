@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::time::Instant;
 
-use raypencil::cast::{BagForm, CastSource, write_scans};
-use raypencil::{NamedRaySet, Sides, Triangles};
+use raypencil::cast::{BagForm, CastSource, SetOfScans, write_scans};
+use raypencil::{Sides, Triangles};
 use serde_json::json;
 
 use crate::args::Cast;
@@ -14,26 +14,27 @@ use crate::{Outcome, Trouble};
 /// Casts and writes the scans of each set.
 pub(super) fn cast_scans(
     command: &Cast,
-    (mesh, sets): (&Triangles, &[NamedRaySet]),
+    (mesh, sets): (&Triangles, &[SetOfScans<'_>]),
     sequences: u64,
     folder: &Path,
     source: &CastSource,
     (spinner, json): (&Spinner, bool),
 ) -> Result<Outcome, Trouble> {
-    let form = command.bag.map(|fields| BagForm { fields, is_dense: command.bag_dense });
+    let bag = command.bag.map(|fields| BagForm { fields, is_dense: command.bag_dense });
+    let form = (bag, command.pcd.unwrap_or_default());
     let mut text = String::new();
     let mut documents = Vec::new();
     let mut hits = 0;
-    for set in sets {
-        let sides = if command.fronts_only { Sides::Fronts } else { set.set.sides() };
-        let folder = if sets.len() == 1 { folder.to_path_buf() } else { folder.join(&set.name) };
+    for &set in sets {
+        let sides = if command.fronts_only { Sides::Fronts } else { set.sides() };
+        let folder = if sets.len() == 1 { folder.to_path_buf() } else { folder.join(set.name()) };
         let begin = Instant::now();
         let written = write_scans(&folder, (mesh, set, sides), sequences, form, source, spinner)?;
         let seconds = begin.elapsed().as_secs_f64();
         hits += written.hits;
         text += &format!(
             "{}: {} of {} in {seconds:.1} s, {:.0} rays/s with writing; {} hit, {} too near\n{}\n",
-            set.name,
+            set.name(),
             raypencil::report::counted(written.scans as u64, "scan", "scans"),
             raypencil::report::counted(written.rays as u64, "ray", "rays"),
             written.rays as f64 / seconds,
@@ -42,7 +43,7 @@ pub(super) fn cast_scans(
             written.summary.display()
         );
         documents.push(json!({
-            "set": set.name,
+            "set": set.name(),
             "scans": written.scans,
             "rays": written.rays,
             "hits": written.hits,

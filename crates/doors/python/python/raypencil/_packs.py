@@ -148,7 +148,7 @@ def check(
     *,
     miss: float | None = None,
     no_faces: bool = False,
-    frame: Literal["mesh", "sensor", "start"] | None = None,
+    frame: Literal["mesh", "sensor", "start", "end"] | None = None,
     topic: str | None = None,
     message: int | None = None,
     channels: Mapping[str, str] | None = None,
@@ -172,7 +172,7 @@ def check(
         miss: a number that means no hit; of whole numbers with ``scale``, as the file has it.
         no_faces: leave out the indices of faces.
         frame: of the points of a cloud: that of the mesh (the default), of the sensor when it fires each ray, or of the sensor at
-            the start of its scan.
+            the start or the end of its scan: when it fires the first or the last ray.
         topic: of a bag, that of the cloud. Default: the only one with clouds.
         message: which of the topic's clouds, from 1. Default: the only one.
         channels: which channel of the files is which map, such as ``{"depth.Z": "ViewLayer.Depth.Z"}``. The map says what the

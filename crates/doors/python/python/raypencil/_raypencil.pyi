@@ -166,6 +166,7 @@ def beam_returns(
     beams: Sequence[int],
     keep: str | int,
     separation_m: float,
+    light: tuple[float, float],
 ) -> _Arrays: ...
 def check_rays(rays: NDArray[np.float64], first: int) -> None: ...
 def cast_warnings(

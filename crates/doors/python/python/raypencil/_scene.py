@@ -111,6 +111,10 @@ class RaySet:
     elevations_deg: NDArray[np.float64] | None
     #: Whether rays pass through the backs of faces.
     fronts_only: bool
+    #: Share of the light that surfaces return.
+    reflectivity: float = 1.0
+    #: Extinction coefficient of the air, 1/m.
+    extinction_per_m: float = 0.0
 
     def beam_returns(self, answers: CastResult) -> dict[str, NDArray[Any]]:
         """The returns of the beams, from the answers to their rays.
@@ -138,6 +142,7 @@ class RaySet:
             list(shape[:-1]),
             self.returns.keep,
             self.returns.separation_m,
+            (self.reflectivity, self.extinction_per_m),
         )
 
 
@@ -303,7 +308,7 @@ class Scene:
     @property
     def ray_sets(self) -> dict[str, RaySet]:
         """The sets of rays of ``[[rays]]``, by name."""
-        parts = ("rays", "times", "weights", "elevations_deg", "fronts_only")
+        parts = ("rays", "times", "weights", "elevations_deg", "fronts_only", "reflectivity", "extinction_per_m")
         sets: dict[str, dict[str, Any]] = {
             name: {part: of.get(part) for part in parts} | {"returns": of.get("keep") and Returns(of["keep"], of["separation_m"])}
             for name, of in self._core.ray_sets.items()

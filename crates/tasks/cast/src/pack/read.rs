@@ -5,7 +5,7 @@ use std::path::{Component, Path};
 
 use raypencil_files::{Fault, FileError, RayArray, bytes, file_sha256_hex, hex_digits, read_rays, sha256};
 use raypencil_mesh_io::load_triangles;
-use raypencil_scene::pattern::Returns;
+use raypencil_scene::pattern::{EchoLight, Returns};
 use raypencil_scene::{Sides, Triangles};
 use serde::Deserialize;
 
@@ -42,6 +42,7 @@ struct Document {
 struct ScanDocument {
     mounting: String,
     returns: Option<ReturnsDocument>,
+    light: Option<LightDocument>,
 }
 
 #[derive(Deserialize)]
@@ -49,6 +50,13 @@ struct ScanDocument {
 struct ReturnsDocument {
     keep: serde_json::Value,
     separation_m: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct LightDocument {
+    reflectivity: f64,
+    extinction_per_m: f64,
 }
 
 #[derive(Deserialize)]
@@ -101,6 +109,11 @@ impl RayPack {
             questions.extend(["time.npy", "elevation.npy"].into_iter().filter(|name| listed(name)));
         }
         let returns = document.scan.as_ref().and_then(|scan| scan.returns.as_ref());
+        let light = document.scan.as_ref().and_then(|scan| scan.light.as_ref());
+        let echo = light.map_or_else(EchoLight::default, |light| EchoLight {
+            reflectivity: light.reflectivity,
+            extinction_per_m: light.extinction_per_m,
+        });
         let wanted = returns.map(|ReturnsDocument { keep, separation_m }| {
             let keep = keep_of_json(keep).ok_or_else(|| {
                 fault(
@@ -110,7 +123,7 @@ impl RayPack {
                     "\"first\", \"strongest\", \"last\", or 1 to 16",
                 )
             })?;
-            Ok::<_, FileError>(Returns { keep, separation_m: *separation_m })
+            Ok::<_, FileError>((Returns { keep, separation_m: *separation_m }, echo))
         });
         let wanted = wanted.transpose()?;
         if wanted.is_some() {

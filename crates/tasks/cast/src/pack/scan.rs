@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::{DQuat, DVec3};
 use raypencil_files::{Fault, FileError, Limits, read_npy_numbers, write_npy_numbers};
-use raypencil_scene::pattern::{Mounting, Returns, TimedPose, TimedPoses};
+use raypencil_scene::pattern::{EchoLight, Mounting, Returns, TimedPose, TimedPoses};
 use raypencil_scene::{CastRay, NamedRaySet, Pose};
 
 use crate::layout::PageScan;
@@ -21,6 +21,8 @@ pub(super) struct Scan {
     pub(super) elevations_deg: Option<Vec<f64>>,
     /// Where the sensor stands in the mesh's frame.
     pub(super) mounting: Mounting,
+    /// Its poses at the first and at the last ray.
+    pub(super) ends: [Pose; 2],
     /// Which returns of a beam are told, if rays are parts of beams; `None`: rays stand for themselves.
     pub(super) returns: Option<ScanReturns>,
 }
@@ -32,6 +34,8 @@ pub(super) struct ScanReturns {
     pub(super) wanted: Returns,
     /// Shares of a beam's power along the last dimension.
     pub(super) weights: Vec<f64>,
+    /// What surfaces and air leave of the light, which decides what is strongest.
+    pub(super) echo: EchoLight,
 }
 
 impl Scan {
@@ -40,10 +44,12 @@ impl Scan {
             times: set.times.clone(),
             elevations_deg: set.elevations_deg.clone(),
             mounting: set.mounting.clone(),
-            returns: set
-                .returns
-                .zip(set.weights.clone())
-                .map(|(wanted, weights)| ScanReturns { wanted, weights }),
+            ends: set.mounting.ends(set.times.as_deref()),
+            returns: set.returns.zip(set.weights.clone()).map(|(wanted, weights)| ScanReturns {
+                wanted,
+                weights,
+                echo: set.echo,
+            }),
         }
     }
 
@@ -88,7 +94,7 @@ impl Scan {
     pub(super) fn read(
         folder: &Path,
         shape: &[u64],
-        (mounting, wanted): (&str, Option<Returns>),
+        (mounting, wanted): (&str, Option<(Returns, EchoLight)>),
         listed: impl Fn(&str) -> bool,
     ) -> Result<Self, FileError> {
         let fault = |name: &str, place: &str, found: String, expected: String| {
@@ -115,7 +121,7 @@ impl Scan {
         let elevations_deg = numbers("elevation.npy", &[channels])?;
         let returns = match wanted {
             None => None,
-            Some(wanted) => {
+            Some((wanted, echo)) => {
                 let rays_of_beam = shape.last().copied().unwrap_or(1);
                 let weights = numbers("weight.npy", &[rays_of_beam])?;
                 let scene = |source| FileError::Scene {
@@ -123,7 +129,8 @@ impl Scan {
                     source,
                 };
                 wanted.validate("returns").map_err(scene)?;
-                weights.map(|weights| ScanReturns { wanted, weights })
+                echo.validate("light").map_err(scene)?;
+                weights.map(|weights| ScanReturns { wanted, weights, echo })
             }
         };
         let array = read_npy_numbers(folder.join("pose.npy"), &Limits::default())?;
@@ -164,7 +171,8 @@ impl Scan {
                 ));
             }
         };
-        Ok(Self { times, elevations_deg, mounting, returns })
+        let ends = mounting.ends(times.as_deref());
+        Ok(Self { times, elevations_deg, mounting, ends, returns })
     }
 
     /// What a page shows of it.

@@ -9,13 +9,14 @@ use raypencil_files::{
 };
 use raypencil_referee::ExactCast;
 use raypencil_report::VERSION;
+use raypencil_scene::pattern::EchoLight;
 use raypencil_scene::{CastRay, FaceId, NamedRaySet, Progress, Reading, Side, Sides, Triangles};
 use serde_json::{Map, json};
 
 use super::scan::{Scan, ScanReturns};
 use super::{PACK_FORMAT, PACK_NAME};
 use crate::answers::{FirstHit, Questions, cast};
-use crate::returns::{BeamReturns, keep_json};
+use crate::returns::{BeamReturns, echo_json, keep_json};
 use crate::write::{CastSource, write_answers, write_beam_returns};
 
 /// How many rays of a pack test what. A program that gets it wrong passes a pack whose number is 0.
@@ -178,7 +179,9 @@ fn write_pack_of(
     let answers = cast(mesh, &rays.rays, sides, questions, progress);
     write_answers(folder, &answers, (mesh, rays, sides), source)?;
     let returns = scan.and_then(|scan| scan.returns.as_ref());
-    let told = returns.map(|returns| BeamReturns::of_first(&answers.first, returns.wanted, &returns.weights));
+    let told = returns.map(|ScanReturns { wanted, weights, echo }| {
+        BeamReturns::of_first(&answers.first, *wanted, (weights, echo))
+    });
     let of_returns =
         told.map_or_else(|| Ok(Vec::new()), |told| write_beam_returns(folder, &told, &rays.shape))?;
     let counts = RayPackCounts::of(&ExactCast::new(mesh), &rays.rays, sides);
@@ -213,9 +216,12 @@ fn write_pack_of(
     if let Some(scan) = scan {
         document["scan"] = json!({ "mounting": scan.mounting_word() });
     }
-    if let Some(ScanReturns { wanted, .. }) = returns {
+    if let Some(ScanReturns { wanted, echo, .. }) = returns {
         document["scan"]["returns"] =
             json!({ "keep": keep_json(wanted.keep), "separationM": wanted.separation_m });
+        if *echo != EchoLight::default() {
+            document["scan"]["light"] = echo_json(echo);
+        }
     }
     write_atomically(&last, |file| file.write_all(format!("{document:#}\n").as_bytes()))?;
     Ok(counts)

@@ -1,8 +1,8 @@
 //! Point clouds, byte by byte.
 
 use glam::DVec3;
-use raypencil_cast::{Answers, CloudFrame, CloudMap, Questions, cast, write_pcd, write_ply};
-use raypencil_scene::pattern::{Mounting, Spinning, TimedPose, TimedPoses};
+use raypencil_cast::{Answers, CloudFrame, CloudMap, PcdData, Questions, cast, write_pcd, write_ply};
+use raypencil_scene::pattern::{EchoLight, Mounting, Spinning, TimedPose, TimedPoses};
 use raypencil_scene::{CastRay, NamedRaySet, Pose, RaySet, Sides, Silent, Triangles};
 
 /// The ring of each point of a set with this shape, as its PCD file gives it.
@@ -22,6 +22,7 @@ fn rings(shape: &[u64]) -> Vec<u16> {
         returns: None,
         elevations_deg: None,
         mounting: Mounting::HERE,
+        echo: EchoLight::default(),
     };
     points_of(&answers, &set, CloudFrame::Mesh).1.iter().map(|point| point.ring).collect()
 }
@@ -43,7 +44,7 @@ struct Point {
 fn points_of(answers: &Answers, set: &NamedRaySet, frame: CloudFrame) -> (String, Vec<Point>) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("cloud.pcd");
-    write_pcd(&path, answers, (set, None), frame, &CloudMap::default()).expect("a file");
+    write_pcd(&path, answers, (set, None), (frame, PcdData::Binary), &CloudMap::default()).expect("a file");
     let bytes = std::fs::read(path).expect("the file");
     let text = b"DATA binary\n";
     let start =
@@ -169,6 +170,73 @@ fn a_moving_head_distorts_its_own_cloud_and_not_that_of_its_start() {
     assert_eq!(placed.mounting.at(100.5).map(|pose| pose.position), Some(DVec3::new(5.0, 7.0, 1.0)));
 }
 
+/// The numbers of a header's line.
+fn numbers(header: &str, key: &str) -> Vec<f64> {
+    let line = header.lines().find_map(|line| line.strip_prefix(key)).expect("the line");
+    line.split_whitespace().map(|word| word.parse().expect("a number")).collect()
+}
+
+#[test]
+fn points_of_a_drive_over_a_floor_stand_where_the_scan_starts_and_ends() {
+    // 10 m/s along y for a second before the scan, during it, and after it; the sensor looks along y, 1 m over the floor.
+    let turned = Pose::from_axis_angle(DVec3::Z, std::f64::consts::FRAC_PI_2);
+    let at = |time_s: f64| TimedPose {
+        time_s,
+        pose: Pose { position: DVec3::new(0.0, 10.0 * (time_s - 99.0), 1.0), ..turned },
+    };
+    let mounting = Mounting::Moving(TimedPoses::new(vec![at(99.0), at(102.0)], "poses").expect("poses"));
+    assert_eq!(CloudFrame::of(&mounting), CloudFrame::ALL);
+    let (set, answers) = head(mounting, 1000);
+    // The last channel of the last sequence: 999 periods of 55.296 us and 15 firings of 2.304 us after the first.
+    let duration = 999.0 * 55.296e-6 + 15.0 * 2.304e-6;
+    let frames = [(CloudFrame::SensorAtStart, 0.0, "first"), (CloudFrame::SensorAtEnd, duration, "last")];
+    for (frame, moment, which) in frames {
+        let (header, points) = points_of(&answers, &set, frame);
+        assert!(
+            header.contains(&format!("frame of the sensor, at the time of the {which} ray\n")),
+            "{header}"
+        );
+        let viewpoint = numbers(&header, "VIEWPOINT ");
+        let position = [0.0, 10.0 * (1.0 + moment), 1.0];
+        assert!(viewpoint.iter().zip(position).all(|(a, b)| (a - b).abs() < 1e-9), "{header}");
+        let mut seen = 0;
+        for (index, point) in points.iter().enumerate().filter(|(_, point)| !point.range.is_nan()) {
+            // Down by the elevation, at an azimuth that runs clockwise; less the way to the moment of the frame.
+            let since = f64::from(point.time);
+            let down = -set.elevations_deg.as_ref().expect("a head")[index % 16].to_radians();
+            let azimuth = -since / 55.296e-6 * 360.0 * 10.0 * 55.296e-6;
+            let level = 1.0 / libm::tan(down);
+            let expected = [
+                level * libm::cos(azimuth.to_radians()) + 10.0 * (since - moment),
+                level * libm::sin(azimuth.to_radians()),
+                -1.0,
+            ];
+            let near = |(found, expected): (&f32, f64)| (f64::from(*found) - expected).abs() < 2e-5;
+            assert!(point.place.iter().zip(expected).all(near), "{frame:?} {index}: {point:?} {expected:?}");
+            seen += 1;
+        }
+        assert!(seen > 7000, "{seen}");
+    }
+}
+
+#[test]
+fn surface_and_air_take_light_by_the_law_of_beer_and_lambert() {
+    let (plain, answers) = head(Mounting::Fixed(Pose::from_position(DVec3::Z)), 3);
+    let echo = EchoLight { reflectivity: 0.25, extinction_per_m: 0.03 };
+    let hazy = NamedRaySet { echo, ..plain.clone() };
+    let [clear, dim] = [&plain, &hazy].map(|set| points_of(&answers, set, CloudFrame::Mesh).1);
+    let mut seen = 0;
+    for (clear, dim) in clear.iter().zip(&dim).filter(|(one, _)| !one.range.is_nan()) {
+        // Over a floor, 1 m up: 1 / R^3 in all, to the floor and back.
+        let range = f64::from(dim.range);
+        let expected = 0.25 / (range * range * range) * (-0.06 * range).exp();
+        assert!((f64::from(dim.intensity) / expected - 1.0).abs() < 1e-5, "{dim:?}");
+        assert!(dim.intensity < 0.25 * clear.intensity && dim.place == clear.place);
+        seen += 1;
+    }
+    assert_eq!(seen, 24);
+}
+
 #[test]
 fn headers_name_the_map_in_which_the_mesh_lies() {
     let mesh = Triangles::new(vec![[-9.0, -9.0, 0.0], [9.0, -9.0, 0.0], [0.0, 9.0, 0.0]], vec![[0, 1, 2]])
@@ -184,12 +252,13 @@ fn headers_name_the_map_in_which_the_mesh_lies() {
         returns: None,
         elevations_deg: None,
         mounting: Mounting::HERE,
+        echo: EchoLight::default(),
     };
     let folder = tempfile::tempdir().expect("a folder");
     let header = |map: &CloudMap| {
         let [ply, pcd] = ["c.ply", "c.pcd"].map(|name| folder.path().join(name));
         write_ply(&ply, &answers, None, map).expect("a file");
-        write_pcd(&pcd, &answers, (&set, None), CloudFrame::Mesh, map).expect("a file");
+        write_pcd(&pcd, &answers, (&set, None), (CloudFrame::Mesh, PcdData::Binary), map).expect("a file");
         [ply, pcd].map(|path| String::from_utf8_lossy(&std::fs::read(path).expect("the file")).into_owned())
     };
     assert!(header(&CloudMap::default()).iter().all(|text| !text.contains("map_")));
@@ -213,6 +282,30 @@ fn headers_name_the_map_in_which_the_mesh_lies() {
     );
 }
 
+#[test]
+fn compressed_points_are_read_back_as_they_were() {
+    let (set, answers) = head(Mounting::Fixed(Pose::from_position(DVec3::Z)), 200);
+    let folder = tempfile::tempdir().expect("a folder");
+    let [plain, packed] = [PcdData::Binary, PcdData::BinaryCompressed].map(|data| {
+        let path = folder.path().join(data.word());
+        write_pcd(&path, &answers, (&set, None), (CloudFrame::Sensor, data), &CloudMap::default())
+            .expect("a file");
+        std::fs::read(path).expect("the file")
+    });
+    let read = |bytes: &[u8]| {
+        raypencil_mesh_io::cloud_from_bytes(bytes, "c.pcd".as_ref(), |_| true).expect("a cloud")
+    };
+    let [of_plain, of_packed] = [read(&plain), read(&packed)];
+    assert_eq!((of_packed.width, of_packed.height), (16, 200));
+    for name in ["x", "y", "z", "intensity", "ring", "time", "timestamp", "channel", "range", "face"] {
+        let values = |cloud: &raypencil_mesh_io::Cloud| -> Vec<u64> {
+            cloud.column(name).expect("a field").values.iter().map(|value| value.to_bits()).collect()
+        };
+        assert_eq!(values(&of_plain), values(&of_packed), "{name}");
+    }
+    assert!(2 * packed.len() < plain.len(), "{} of {} bytes", packed.len(), plain.len());
+}
+
 /// A ray that meets a plate 0.25 m from its edge, one that passes 0.5 m beside it, and one through its diagonal.
 #[test]
 fn margins_are_fields_of_clouds() {
@@ -231,10 +324,12 @@ fn margins_are_fields_of_clouds() {
         returns: None,
         elevations_deg: None,
         mounting: Mounting::HERE,
+        echo: EchoLight::default(),
     };
     let folder = tempfile::tempdir().expect("a folder");
     let (pcd, ply) = (folder.path().join("cloud.pcd"), folder.path().join("cloud.ply"));
-    write_pcd(&pcd, &answers, (&set, None), CloudFrame::Mesh, &CloudMap::default()).expect("a file");
+    write_pcd(&pcd, &answers, (&set, None), (CloudFrame::Mesh, PcdData::Binary), &CloudMap::default())
+        .expect("a file");
     write_ply(&ply, &answers, None, &CloudMap::default()).expect("a file");
     let bytes = std::fs::read(&pcd).expect("the file");
     let text = String::from_utf8_lossy(&bytes);

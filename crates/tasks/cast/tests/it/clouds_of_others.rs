@@ -38,9 +38,9 @@ pub(super) fn head() -> Spinning {
     head
 }
 
-/// A drive along a bend: 3 m/s, and 40 degrees in a tenth of a second.
+/// A drive along a bend, from before the scan until after it: 3 m/s, and 40 degrees in a tenth of a second.
 pub(super) fn bend() -> Mounting {
-    let at = |k: u32| {
+    let at = |k: i32| {
         let time_s = f64::from(k) * 0.025;
         let turn = Pose::from_axis_angle(DVec3::Z, time_s * 7.0);
         TimedPose {
@@ -48,7 +48,7 @@ pub(super) fn bend() -> Mounting {
             pose: Pose { position: DVec3::new(30.0 * time_s, 40.0 * time_s * time_s, 1.4), ..turn },
         }
     };
-    Mounting::Moving(TimedPoses::new((0..6).map(at).collect(), "poses").expect("poses"))
+    Mounting::Moving(TimedPoses::new((-1..6).map(at).collect(), "poses").expect("poses"))
 }
 
 pub(super) fn still() -> Mounting {
@@ -82,12 +82,16 @@ pub(super) fn points(set: &NamedRaySet, frame: CloudFrame) -> Vec<Point> {
     let rank =
         |channel: usize| elevations.iter().filter(|other| **other < elevations[channel]).count() as u16;
     let times = set.times.as_ref().expect("times");
+    // Channel 0 fires first, the last one last.
+    let end = |time: f64| set.mounting.at(time).expect("a pose");
+    let [start, end] = [end(times[0]), end(times[times.len() - 1])];
     let point = |(index, read): (usize, &raypencil_scene::Reading<raypencil_cast::FirstHit>)| {
         let (place, range) = read.hit().map_or((DVec3::NAN, f64::NAN), |hit| (hit.point, hit.range));
         let pose = match frame {
             CloudFrame::Mesh => Pose::IDENTITY,
             CloudFrame::Sensor => set.mounting.at(times[index]).expect("a pose"),
-            CloudFrame::SensorAtStart => set.mounting.first(),
+            CloudFrame::SensorAtStart => start,
+            CloudFrame::SensorAtEnd => end,
         };
         Point {
             place: pose.inverse() * place,
@@ -189,11 +193,16 @@ impl Trial {
     /// The points fail, and this is why.
     #[track_caller]
     pub(super) fn expect_why(&self, points: &[Point], fields: Fields, frame: CloudFrame, words: &str) {
-        let checked = self.judge(points, fields, frame);
-        assert!(!checked.passes());
-        let why = checked.why.unwrap_or_else(|| "no reason".into());
-        assert!(why.contains(words) && why.starts_with("100.0000 %"), "{why}");
+        expect(&self.judge(points, fields, frame), words);
     }
+}
+
+/// A cloud is wrong, and these words say why of all of it.
+#[track_caller]
+pub(super) fn expect(checked: &RayPackChecked, words: &str) {
+    assert!(!checked.passes());
+    let why = checked.why.as_deref().unwrap_or("no reason");
+    assert!(why.contains(words) && why.starts_with("100.0000 %"), "{why}");
 }
 
 /// The rays of another head or mounting, in the place of those of a set.
@@ -289,7 +298,16 @@ fn frames_and_axes_are_told() {
         mesh,
         "the sensor, at the time of each ray: declare --frame sensor",
     );
-    trial.expect_why(&of(CloudFrame::SensorAtStart), Fields::None, mesh, "declare --frame start");
+    let [start, end] = [CloudFrame::SensorAtStart, CloudFrame::SensorAtEnd];
+    trial.expect_why(&of(start), Fields::None, mesh, "declare --frame start");
+    trial.expect_why(&of(end), Fields::None, mesh, "declare --frame end");
+    trial.expect_why(
+        &of(end),
+        Fields::Keys,
+        start,
+        "the sensor, at the time of the last ray: declare --frame end",
+    );
+    trial.expect_why(&of(start), Fields::Keys, end, "at the time of the first ray: declare --frame start");
     trial.expect_why(
         &of(mesh),
         Fields::None,
@@ -305,11 +323,14 @@ fn frames_and_axes_are_told() {
     trial.expect_why(&turned(|p| p * 1000.0), Fields::None, sensor, "thousandths");
     // Both at once.
     trial.expect_why(&turned(|p| DVec3::new(p.x, -p.y, p.z)), Fields::None, mesh, "hold x, -y, z");
-    // Only x, y and z are placed, by the pose of the start.
-    let start = trial.set.mounting.first();
-    let placed =
-        of(sensor).into_iter().map(|one| Point { place: start * one.place, ..one }).collect::<Vec<_>>();
-    trial.expect_why(&placed, Fields::None, mesh, "by the sensor's pose at the start of the scan");
+    // Only x, y and z are placed, by the pose of the start or of the end.
+    let poses = trial.set.mounting.ends(trial.set.times.as_deref());
+    for (pose, which) in poses.into_iter().zip(["start", "end"]) {
+        let placed =
+            of(sensor).into_iter().map(|one| Point { place: pose * one.place, ..one }).collect::<Vec<_>>();
+        let words = format!("by the sensor's pose at the {which} of the scan");
+        trial.expect_why(&placed, Fields::None, mesh, &words);
+    }
 }
 
 #[test]

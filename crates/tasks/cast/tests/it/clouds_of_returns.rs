@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use raypencil_cast::{
-    BeamReturns, CastSource, CloudFrame, Questions, RayPackChecked, cast, check_ray_pack, write_scan_pack,
-    write_set,
+    BeamReturns, CastSource, CloudFrame, PcdData, Questions, RayPackChecked, cast, check_ray_pack,
+    write_scan_pack, write_set,
 };
-use raypencil_scene::pattern::{Cone, Keep, Mounting, PatternRays, Returns, Spinning};
+use raypencil_scene::pattern::{Cone, EchoLight, Keep, Mounting, PatternRays, Returns, Spinning};
 use raypencil_scene::{CastRay, NamedRaySet, Precision, Sides, Silent, Triangles};
 
-use super::clouds_of_others::{bend, head, of_frame, room, still};
+use super::clouds_of_others::{bend, expect, head, of_frame, room, still};
 
 const SENSOR: CloudFrame = CloudFrame::Sensor;
 
@@ -141,13 +141,6 @@ impl Trial {
     }
 }
 
-#[track_caller]
-fn expect(checked: &RayPackChecked, words: &str) {
-    assert!(!checked.passes());
-    let why = checked.why.as_deref().unwrap_or("no reason");
-    assert!(why.contains(words) && why.starts_with("100.0000 %"), "{why}");
-}
-
 const RULES: [Keep; 5] = [Keep::First, Keep::Strongest, Keep::Last, Keep::UpTo(2), Keep::UpTo(3)];
 
 #[test]
@@ -168,8 +161,14 @@ fn right_returns_pass_by_order_by_keys_and_by_numbers() {
     let trial = Trial::of_room(&bend(), Keep::UpTo(2));
     let answers = cast(&trial.mesh, trial.set.set.rays(), Sides::Both, Questions::default(), &Silent);
     let folder = trial.folder.path().join("own");
-    write_set(&folder, &answers, (&trial.mesh, &trial.set, Sides::Both), &CastSource::default())
-        .expect("files");
+    write_set(
+        &folder,
+        &answers,
+        (&trial.mesh, &trial.set, Sides::Both),
+        &CastSource::default(),
+        PcdData::Binary,
+    )
+    .expect("files");
     let checked = trial.check(&folder.join("cloud-sensor.pcd"), Precision::F64).expect("a check");
     assert!(checked.passes(), "{:?}", checked.why);
     let text = checked.document().screen();
@@ -180,6 +179,31 @@ fn right_returns_pass_by_order_by_keys_and_by_numbers() {
     let cloud = checked.cloud.expect("a cloud");
     assert!(cloud.has_range);
     assert_eq!(cloud.assigned, "by ring and time");
+}
+
+#[test]
+fn in_thick_air_other_returns_are_the_strongest() {
+    let echo = EchoLight { reflectivity: 0.5, extinction_per_m: 0.5 };
+    let trial = |echo| Trial::new(room(), NamedRaySet { echo, ..set_of(&still(), Keep::Strongest) });
+    let [clear, thick] = [EchoLight::default(), echo].map(trial);
+    let leading = |trial: &Trial| -> Vec<Option<usize>> {
+        trial.returns.told().iter().map(|told| told.map(|told| told.ray)).collect()
+    };
+    let other = leading(&clear).iter().zip(&leading(&thick)).filter(|(a, b)| a != b).count();
+    assert!(other > 0);
+    for checked in thick.judge_all(&thick.right()) {
+        assert!(checked.passes(), "{:?}", checked.why);
+    }
+    let checked = thick.check(&thick.write(&clear.right(), Fields::Keys), Precision::F64).expect("a check");
+    assert_eq!(checked.comparison.counts().wrong, other as u64);
+    // The pack says so, and one of no air says nothing of it.
+    let list = |trial: &Trial| {
+        let text = std::fs::read(trial.folder.path().join("pack/raypack.json")).expect("a list");
+        serde_json::from_slice::<serde_json::Value>(&text).expect("JSON")
+    };
+    let light = serde_json::json!({ "reflectivity": 0.5, "extinctionPerM": 0.5 });
+    assert_eq!(list(&thick)["scan"]["light"], light);
+    assert!(list(&clear)["scan"].get("light").is_none());
 }
 
 #[test]

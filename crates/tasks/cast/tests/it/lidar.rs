@@ -1,8 +1,9 @@
 //! Patterns of range sensors in worlds with known answers, and their point clouds.
 
 use glam::DVec3;
-use raypencil_cast::{Answers, CastSource, Questions, cast, range_picture, top_picture, write_set};
-use raypencil_scene::pattern::{Cone, Grid, Mounting, Spinning};
+use raypencil_cast::{Answers, CastSource, PcdData, Questions, cast, range_picture, top_picture, write_set};
+use raypencil_files::{Limits, read_npy_numbers};
+use raypencil_scene::pattern::{Cone, Grid, Mounting, Spinning, TimedPose, TimedPoses};
 use raypencil_scene::{NamedRaySet, Pose, Sides, Silent, Triangles};
 
 /// A VLP-16 at this pose, with its emitters on its axis.
@@ -104,7 +105,7 @@ fn clouds_hold_the_points_their_channels_and_their_times() {
     let mesh = floor();
     let found = answers(&mesh, &set);
     let source = CastSource { mesh: "m".into(), rays: "r".into(), ..CastSource::default() };
-    write_set(folder.path(), &found, (&mesh, &set, Sides::Both), &source).unwrap();
+    write_set(folder.path(), &found, (&mesh, &set, Sides::Both), &source, PcdData::Binary).unwrap();
 
     let (header, body) = parts(&std::fs::read(folder.path().join("cloud.ply")).unwrap(), "end_header\n");
     let hits: Vec<_> = found.hits().collect();
@@ -149,6 +150,53 @@ fn clouds_hold_the_points_their_channels_and_their_times() {
     assert_eq!(summary["rays"]["name"], "vlp16");
     assert_eq!(summary["pictures"], serde_json::json!(["range.png", "top.png"]));
     assert!(summary["arrays"].as_array().unwrap().contains(&"time.npy".into()));
+}
+
+#[test]
+fn origins_and_directions_are_those_of_each_firing() {
+    // 10 m/s along y, and a quarter of a turn to the left in the second.
+    let at = |time_s: f64| TimedPose {
+        time_s,
+        pose: Pose {
+            position: DVec3::new(0.0, 10.0 * time_s, 2.0),
+            ..Pose::from_axis_angle(DVec3::Z, time_s * std::f64::consts::FRAC_PI_2)
+        },
+    };
+    let mounting = Mounting::Moving(TimedPoses::new(vec![at(0.0), at(1.0)], "poses").unwrap());
+    let head = Spinning {
+        steps: 5,
+        azimuth_step_deg: 0.0625,
+        period_s: 0.125,
+        ..Spinning::preset("vlp-16").unwrap()
+    };
+    let pattern = mounting.place(head.rays("rays").unwrap(), "rays").unwrap();
+    let set = NamedRaySet::new("vlp16", pattern, Sides::Both).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let (mesh, source) = (floor(), CastSource::default());
+    let found = answers(&mesh, &set);
+    write_set(folder.path(), &found, (&mesh, &set, Sides::Both), &source, PcdData::Binary).unwrap();
+    let read = |name: &str| {
+        let array = read_npy_numbers(folder.path().join(name), &Limits::default()).unwrap();
+        assert_eq!(array.shape, [5, 16, 3], "{name}");
+        array.values.chunks(3).map(DVec3::from_slice).collect::<Vec<DVec3>>()
+    };
+    let [origins, directions] = ["origin.npy", "direction.npy"].map(read);
+    for (index, (origin, direction)) in origins.into_iter().zip(directions).enumerate() {
+        let channel = &head.channels[index % 16];
+        let time = (index / 16) as f64 * 0.125 + channel.firing_s;
+        let emitter = DVec3::new(0.0, 10.0 * time, 2.0 + channel.vertical_m);
+        assert!((origin - emitter).length() < 1e-12, "{index}: {origin} {emitter}");
+        let azimuth = (90.0 * time + 0.0625 * (time / 0.125)).to_radians();
+        let elevation = channel.elevation_deg.to_radians();
+        let expected = DVec3::new(
+            libm::cos(elevation) * libm::cos(azimuth),
+            libm::cos(elevation) * libm::sin(azimuth),
+            libm::sin(elevation),
+        );
+        assert!((direction - expected).length() < 1e-12, "{index}: {direction} {expected}");
+    }
+    let summary = std::fs::read_to_string(folder.path().join("summary.json")).unwrap();
+    assert!(summary.contains("\"origin.npy\"") && summary.contains("\"direction.npy\""));
 }
 
 #[test]

@@ -1,9 +1,9 @@
 //! Returns of beams with a width, of worlds whose ranges and shares follow by hand.
 
 use glam::DVec3;
-use raypencil_cast::{Answers, BeamReturn, BeamReturns, CastSource, Questions, cast, write_set};
+use raypencil_cast::{Answers, BeamReturn, BeamReturns, CastSource, PcdData, Questions, cast, write_set};
 use raypencil_files::{Limits, read_npy_numbers};
-use raypencil_scene::pattern::{Cone, Keep, Mounting, PatternRays, Returns};
+use raypencil_scene::pattern::{Cone, EchoLight, Keep, Mounting, PatternRays, Returns};
 use raypencil_scene::{CastRay, NamedRaySet, Sides, Silent, Triangles};
 
 /// Half angle of the cone, radians, and its rays: 1 + 6 + 12.
@@ -99,6 +99,35 @@ fn half_of_a_footprint_is_on_a_near_wall_and_half_on_a_far_one() {
     let (_, joined) = asked(&walls, &beam(DVec3::X, 0.0, Keep::UpTo(2), 10.1));
     assert_eq!((told(&joined)[0].rays, joined.footprints()[0].is_mixed()), (19, false));
     assert_eq!(joined.told()[1], None);
+}
+
+#[test]
+fn in_thick_air_the_near_wall_is_the_strongest() {
+    // The near wall has the seven rays on one side; the far one the middle and the others, and more light without air.
+    let walls = mesh(&[wall(10.0, -1.0, -1e-6), wall(12.0, -1.0, 1.0)]);
+    let clear = beam(DVec3::X, 0.0, Keep::UpTo(2), 0.5);
+    // 0.2 1/m on 2 m more, there and back: e^-0.8, more than the walls differ by.
+    let echo = EchoLight { reflectivity: 0.5, extinction_per_m: 0.2 };
+    let thick = NamedRaySet { echo, ..clear.clone() };
+    let both = |set: &NamedRaySet| {
+        let found = told(&asked(&walls, set).1);
+        [found[0], found[1]]
+    };
+    let ([near, far], [near_left, far_left]) = (both(&clear), both(&thick));
+    assert!(
+        near.strength < far.strength && near_left.strength > far_left.strength,
+        "{near_left:?} {far_left:?}"
+    );
+    for (clear, left) in [(near, near_left), (far, far_left)] {
+        // Rays of a wall differ by 0.6 mm at most: by 2.4e-4 of the light that the air leaves.
+        let expected = 0.5 * clear.strength * (-0.4 * clear.range).exp();
+        assert!((left.strength / expected - 1.0).abs() < 5e-4, "{clear:?} {left:?}");
+        assert_eq!((left.range, left.ray, left.rays), (clear.range, clear.ray, clear.rays));
+    }
+    for (echo, number) in [(EchoLight::default(), 2), (echo, 1)] {
+        let set = NamedRaySet { echo, ..beam(DVec3::X, 0.0, Keep::Strongest, 0.5) };
+        assert_eq!(told(&asked(&walls, &set).1)[0].number, number);
+    }
 }
 
 #[test]
@@ -205,7 +234,8 @@ fn arrays_and_clouds_have_a_place_for_each_return() {
     let set = beam(DVec3::X, 0.0, Keep::UpTo(3), 0.5);
     let (answers, returns) = asked(&walls, &set);
     let source = CastSource { mesh: "m".into(), rays: "r".into(), ..CastSource::default() };
-    write_set(folder.path(), &answers, (&walls, &set, Sides::Both), &source).expect("a folder");
+    write_set(folder.path(), &answers, (&walls, &set, Sides::Both), &source, PcdData::Binary)
+        .expect("a folder");
     let read = |name: &str| {
         let path = folder.path().join(format!("return.{name}.npy"));
         let array = read_npy_numbers(path, &Limits::default()).expect("an array");

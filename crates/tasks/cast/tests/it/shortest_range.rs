@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use raypencil_cast::{
-    Answers, CandidateConventions, CastSource, Questions, RayArray, RayPackChecked, Stated, cast,
+    Answers, CandidateConventions, CastSource, PcdData, Questions, RayArray, RayPackChecked, Stated, cast,
     check_ray_pack, compare, comparison_text, counts_text, range_picture, ray_text, write_answers,
     write_ray_pack, write_set,
 };
@@ -334,7 +334,7 @@ fn clouds_pictures_and_words_tell_too_near_from_a_miss() {
     );
 
     let folder = tempfile::tempdir().unwrap();
-    write_set(folder.path(), &answers, (&mesh, &set, Sides::Both), &source()).unwrap();
+    write_set(folder.path(), &answers, (&mesh, &set, Sides::Both), &source(), PcdData::Binary).unwrap();
     let of = |name: &str| read_npy_numbers(folder.path().join(name), &Default::default()).unwrap().values;
     assert_eq!(of("range.npy"), [f64::NEG_INFINITY, 10.0, f64::INFINITY]);
     assert_eq!(of("face.npy")[0], f64::from(u32::MAX));

@@ -1,4 +1,4 @@
-use raypencil_scene::pattern::Mounting;
+use raypencil_scene::pattern::{EchoLight, Mounting};
 use raypencil_scene::{RaySet, Reading, Sides};
 
 use super::*;
@@ -35,6 +35,7 @@ fn a_head_has_a_row_for_each_channel_with_the_highest_on_top() {
         returns: None,
         elevations_deg: Some(vec![-15.0, 15.0, 0.0]),
         mounting: Mounting::HERE,
+        echo: EchoLight::default(),
     };
     let found = Layout::of(&set.shape, set.set.rays(), Some(&PageScan::of(&set)));
     assert_eq!((found.width, found.height), (2, 3));

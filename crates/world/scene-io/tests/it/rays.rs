@@ -4,9 +4,11 @@ use std::path::Path;
 
 use glam::DVec3;
 use proptest::prelude::*;
-use raypencil_scene::pattern::{Keep, Returns};
+use raypencil_scene::pattern::{EchoLight, Keep, Returns};
 use raypencil_scene::{Pose, Sides};
-use raypencil_scene_io::{LoadedRaySets, PoseChoice, poses_from_bag, ray_sets_from_text, read_ray_sets};
+use raypencil_scene_io::{
+    LoadedRaySets, PoseChoice, poses_from_bag, ray_sets_from_text, read_ray_sets, read_sweeps,
+};
 
 fn read(text: &str) -> Result<LoadedRaySets, String> {
     ray_sets_from_text(text, "r.toml".as_ref()).map_err(|error| error.to_string())
@@ -138,6 +140,63 @@ fn a_cone_says_which_of_its_returns_are_told() {
         let error = read(returns).unwrap_err();
         assert!(error.starts_with("r.toml:3:") && error.contains(&message), "{error}");
     }
+}
+
+#[test]
+fn surfaces_and_air_take_light() {
+    let set = |keys: &str| {
+        one(&format!("grid = {{ columns = 2, rows = 2, width_deg = 60, height_deg = 30 }}\n{keys}"))
+    };
+    assert_eq!(set("").unwrap().sets[0].echo, EchoLight::default());
+    let read = set("reflectivity = 0.25\nextinction_per_m = 1e-3\n").unwrap();
+    assert_eq!(read.sets[0].echo, EchoLight { reflectivity: 0.25, extinction_per_m: 1e-3 });
+    for (keys, words) in [
+        ("reflectivity = 1.5\n", "`rays 0.reflectivity` is 1.5; expected 0 to 1"),
+        ("extinction_per_m = -0.01\n", "`rays 0.extinction_per_m` is -0.01; expected 0 to 1000000 1/m"),
+        ("extinction_per_m = nan\n", "`rays 0.extinction_per_m` is NaN; expected 0 to 1000000 1/m"),
+        ("extinction_per_m = inf\n", "`rays 0.extinction_per_m` is inf; expected 0 to 1000000 1/m"),
+    ] {
+        let message = set(keys).unwrap_err();
+        assert!(message.contains(words), "{message}");
+    }
+}
+
+#[test]
+fn sweeps_are_the_sets_of_heads_without_their_rays() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("drive.toml");
+    let head = "spinning = { elevations_deg = [2, -20], steps = 6, firing_times_us = [0, 500] }";
+    let poses = "poses = [{ time_s = 0 }, { time_s = 1, position_m = [5, 0, 1] }]\nstart_s = 0.25\n";
+    let returns = "returns = { keep = 2, separation_m = 1 }";
+    let tables = |poses: &str| {
+        format!(
+            "[[rays]]\nname = \"alone\"\n{head}\n{poses}sides = \"fronts\"\nextinction_per_m = 0.01\n\
+             [[rays]]\nname = \"beams\"\ncone = {{ of = {{ {head} }}, divergence_mrad = 3, rings = 1, {returns} }}\n{poses}"
+        )
+    };
+    std::fs::write(&path, tables(poses)).unwrap();
+    let (whole, swept) = (read_ray_sets(&path).unwrap(), read_sweeps(&path).unwrap());
+    assert_eq!(whole.sha256, swept.sha256);
+    for (set, sweep) in whole.sets.iter().zip(&swept.sweeps) {
+        assert_eq!(sweep.part(0..6, "rays").unwrap(), *set);
+        assert_eq!(
+            sweep.part(4..6, "rays").unwrap().set.rays(),
+            &set.set.rays()[4 * set.set.rays().len() / 6..]
+        );
+    }
+    // Refused in the same words, and what is no head by its name.
+    std::fs::write(&path, tables("poses = [{ time_s = 0 }, { time_s = 0.045 }]\n")).unwrap();
+    let [whole, swept] = [read_ray_sets(&path).unwrap_err(), read_sweeps(&path).unwrap_err()];
+    assert_eq!(whole.to_string(), swept.to_string());
+    assert!(swept.to_string().contains("time of ray 6"), "{swept}");
+    let grid =
+        "[[rays]]\nname = \"flash\"\ngrid = { columns = 2, rows = 2, width_deg = 60, height_deg = 30 }\n";
+    std::fs::write(&path, grid).unwrap();
+    let message = read_sweeps(&path).unwrap_err().to_string();
+    assert!(
+        message.contains("`rays 0`, flash, has no firing sequences; expected a spinning head"),
+        "{message}"
+    );
 }
 
 #[test]
@@ -332,7 +391,7 @@ fn what_is_no_ray_set_is_refused_with_its_place() {
             "spinning = { preset = \"vlp-16\" }\npitch = 3\n",
             "r.toml:4:1: unknown key `pitch`; did you mean `pitch_down_deg`, in degrees? Known keys: `name`, `file`, `times_file`, `spinning`, \
              `grid`, `angles`, `cone`, `sides`, `start_s`, `position_m`, `pitch_down_deg`, `yaw_left_deg`, `roll_right_deg`, `poses`, `poses_file`, \
-             `poses_topic`, `poses_frames`",
+             `poses_topic`, `poses_frames`, `reflectivity`, `extinction_per_m`",
         ),
         ("spinning = 3", "r.toml:3:12: the number 3; expected a table of keys, { ... } or [...]"),
     ] {

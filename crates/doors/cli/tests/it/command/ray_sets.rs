@@ -336,12 +336,27 @@ fn clouds_of_cast_are_right_in_their_own_frame_and_told_in_another() {
     at("moving.toml", &format!("[[rays]]\nname = \"moving\"\n{head}{poses}"));
     screen(folder.path(), &["pack", "prism.obj", "--rays", "moving.toml", "-o", "pack"], 0);
     screen(folder.path(), &["cast", "prism.obj", "moving.toml", "--bag", "velodyne", "-o", "cast"], 0);
-    for (file, frame) in [("cloud.pcd", "mesh"), ("cloud-sensor.pcd", "sensor"), ("cloud-start.pcd", "start")]
-    {
+    let of_frames = [
+        ("cloud.pcd", "mesh"),
+        ("cloud-sensor.pcd", "sensor"),
+        ("cloud-start.pcd", "start"),
+        ("cloud-end.pcd", "end"),
+    ];
+    for (file, frame) in of_frames {
         let file = format!("cast/{file}");
         let shown = screen(folder.path(), &["check", "pack", &file, "--frame", frame], 0);
         assert!(shown.contains("laid on the rays by ring and time. Judged: x, y, z, which rays have a point, and the field range"), "{shown}");
     }
+    // Compressed, the same clouds; and scan by scan.
+    let packed = ["--pcd", "binary_compressed", "-o", "packed"];
+    screen(folder.path(), &[&["cast", "prism.obj", "moving.toml"][..], &packed].concat(), 0);
+    screen(folder.path(), &["check", "pack", "packed/cloud-end.pcd", "--frame", "end"], 0);
+    let text = fs::read(folder.path().join("packed/cloud-end.pcd")).expect("a file");
+    assert!(String::from_utf8_lossy(&text).contains("\nDATA binary_compressed\n"));
+    screen(folder.path(), &["cast", "prism.obj", "moving.toml", "--scans", "40", "-o", "scans"], 0);
+    let [of_scan, alone] = ["scans/scans/000000.pcd", "cast/cloud-sensor.pcd"]
+        .map(|name| fs::read(folder.path().join(name)).expect("a file"));
+    assert!(of_scan == alone, "a scan of all is the set");
     let bag = "cast/rosbag/rosbag_0.mcap";
     let of_bag = ["check", "pack", bag, "--frame", "sensor"];
     let shown = screen(folder.path(), &[&of_bag[..], &["--topic", "/points", "--message", "1"]].concat(), 0);

@@ -2,7 +2,7 @@
 
 use raypencil_files::RayArray;
 use raypencil_referee::ExactCast;
-use raypencil_scene::pattern::{Keep, Returns};
+use raypencil_scene::pattern::{EchoLight, Keep, Returns};
 use raypencil_scene::{CastRay, Precision, Reading, Sides, Triangles};
 
 use crate::answers::FirstHit;
@@ -11,8 +11,10 @@ use crate::pack::mistakes::CloudPart;
 use crate::pack::scan::{Scan, ScanReturns};
 use crate::returns::{BeamReturn, BeamReturns};
 
-/// Roundings of a strength beside those of its cosines and ranges: a product, two quotients and a sum for each of its rays.
+/// Roundings of a strength beside those of its cosines and ranges: a product, two quotients and a sum for each of its rays. An exponential, and its
+/// products with what there is, are as many more.
 const ROUNDINGS_OF_LIGHT: f64 = 4.0;
+const ROUNDINGS_OF_AIR: f64 = 4.0;
 
 /// The returns of the beams of a pack.
 ///
@@ -21,6 +23,7 @@ const ROUNDINGS_OF_LIGHT: f64 = 4.0;
 pub(in crate::pack) struct Beams {
     wanted: Returns,
     weights: Vec<f64>,
+    echo: EchoLight,
     /// All rays of the pack, and what is read by each.
     rays: Vec<CastRay>,
     first: Vec<Reading<FirstHit>>,
@@ -53,14 +56,16 @@ impl BeamQuestion {
         (scan, returns): (&Scan, &ScanReturns),
         first: Vec<Reading<FirstHit>>,
     ) -> Self {
-        let ScanReturns { wanted, weights } = returns;
-        let told_by = |keep: Keep| BeamReturns::of_first(&first, Returns { keep, ..*wanted }, weights);
+        let ScanReturns { wanted, weights, echo } = returns;
+        let told_by =
+            |keep: Keep| BeamReturns::of_first(&first, Returns { keep, ..*wanted }, (weights, echo));
         let returns = told_by(wanted.keep);
         let numbers = returns.told().iter().map(|told| told.map_or(0, |told| told.number)).collect();
         let others = others(wanted.keep, &told_by);
         let beams = Beams {
             wanted: *wanted,
             weights: weights.clone(),
+            echo: *echo,
             rays: rays.rays.clone(),
             first,
             returns,
@@ -293,7 +298,8 @@ impl Beams {
             Keep::UpTo(most) => most as usize,
         };
         let more = Returns { keep: Keep::UpTo(most as u64 + 1), ..self.wanted };
-        let found = BeamReturns::of_first(&self.first[self.rays_at(beam)], more, &self.weights);
+        let light = (self.weights.as_slice(), &self.echo);
+        let found = BeamReturns::of_first(&self.first[self.rays_at(beam)], more, light);
         let mut strengths: Vec<f64> = found.told().iter().flatten().map(|told| told.strength).collect();
         strengths.sort_by(|a, b| b.total_cmp(a));
         let [.., weakest, next] = strengths[..] else { return false };
@@ -303,12 +309,17 @@ impl Beams {
         let of_ray = |(ray, hit): (usize, &FirstHit)| {
             let asked = &self.rays[ray];
             let of_cosine = normal_error(exact, mesh, asked, hit.face, precision) / hit.cos_incidence.abs();
-            let of_range = 2.0 * exact.range_error(asked, hit.face, precision) / hit.range;
-            of_cosine + of_range
+            let error = exact.range_error(asked, hit.face, precision);
+            // The exponent 2 sigma R is off by its range and by a rounding of its own.
+            let exponent = 2.0 * self.echo.extinction_per_m;
+            let of_air = exponent * (error + precision.unit_roundoff * hit.range);
+            of_cosine + 2.0 * error / hit.range + of_air
         };
         let rays = self.rays_at(beam).filter_map(|ray| Some((ray, self.first[ray].hit()?)));
+        let is_plain = self.echo == EchoLight::default();
+        let roundings = if is_plain { ROUNDINGS_OF_LIGHT } else { ROUNDINGS_OF_LIGHT + ROUNDINGS_OF_AIR };
         let largest = rays.map(of_ray).fold(0.0, f64::max)
-            + ROUNDINGS_OF_LIGHT * self.weights.len() as f64 * precision.unit_roundoff;
+            + roundings * self.weights.len() as f64 * precision.unit_roundoff;
         weakest - next <= largest * (weakest + next)
     }
 }

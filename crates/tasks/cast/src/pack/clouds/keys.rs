@@ -263,7 +263,8 @@ impl Asked<'_> {
             let of_sensor = match frame {
                 CloudFrame::Sensor => points[point],
                 CloudFrame::Mesh => pose.inverse() * points[point],
-                CloudFrame::SensorAtStart => pose.inverse() * (scan.mounting.first() * points[point]),
+                CloudFrame::SensorAtStart => pose.inverse() * (scan.ends[0] * points[point]),
+                CloudFrame::SensorAtEnd => pose.inverse() * (scan.ends[1] * points[point]),
             };
             votes.add(channel, of_sensor);
         }

@@ -83,7 +83,9 @@ pub(in crate::pack) fn of_cloud<'a>(
 fn of_frames<'a>(list: &mut List<'a>, case: &'a CloudCase<'a>, scan: &'a Scan) {
     let is_here = scan.mounting == Mounting::HERE;
     for frame in CloudFrame::ALL {
-        let is_other = frame != case.frame && (frame != CloudFrame::SensorAtStart || scan.is_moving());
+        let is_one_with_sensor =
+            matches!(frame, CloudFrame::SensorAtStart | CloudFrame::SensorAtEnd) && !scan.is_moving();
+        let is_other = frame != case.frame && !is_one_with_sensor;
         if is_other && !is_here {
             let words =
                 format!("points are in the frame of {}: declare --frame {}", frame.words(), frame.option());
@@ -94,16 +96,17 @@ fn of_frames<'a>(list: &mut List<'a>, case: &'a CloudCase<'a>, scan: &'a Scan) {
         return;
     }
     if scan.is_moving() && case.frame == CloudFrame::Mesh {
-        let words = "points are placed on the mesh by the sensor's pose at the start of the scan: each has the pose of its own time";
-        list.add(words, true, move |trial| {
-            let start = scan.mounting.first().inverse();
-            set_poses(trial, |index| Some(scan.pose(index) * start));
-        });
+        for (which, end) in ["start", "end"].into_iter().zip(scan.ends) {
+            let words = format!(
+                "points are placed on the mesh by the sensor's pose at the {which} of the scan: each has the pose of its own time"
+            );
+            list.add(words, true, move |trial| {
+                let end = end.inverse();
+                set_poses(trial, |index| Some(scan.pose(index) * end));
+            });
+        }
     }
-    let at = move |index: usize| match case.frame {
-        CloudFrame::SensorAtStart => scan.mounting.first(),
-        CloudFrame::Mesh | CloudFrame::Sensor => scan.pose(index),
-    };
+    let at = move |index: usize| pose_of(Some(scan), case.frame, index).unwrap_or_else(|| scan.pose(index));
     list.add(
         "the sensor's pose is applied the other way round: as that of the mesh in the sensor's frame",
         false,
@@ -166,10 +169,7 @@ fn of_head<'a>(list: &mut List<'a>, case: &'a CloudCase<'a>, scan: &'a Scan) {
 /// Poses of a moving head.
 fn of_motion<'a>(list: &mut List<'a>, case: &'a CloudCase<'a>, scan: &'a Scan) {
     let Mounting::Moving(poses) = &scan.mounting else { return };
-    let last = scan.times.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
-    let of_last = poses.at(last).unwrap_or_else(|| scan.mounting.first());
-    let first = scan.times.iter().flatten().copied().fold(f64::INFINITY, f64::min);
-    let of_first = poses.at(first).unwrap_or_else(|| scan.mounting.first());
+    let [of_first, of_last] = scan.ends;
     let held = move |index: usize| {
         let time = scan.time(index);
         let after = poses.poses().partition_point(|pose| pose.time_s <= time);

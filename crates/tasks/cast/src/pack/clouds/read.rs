@@ -304,6 +304,7 @@ pub(super) fn pose_of(scan: Option<&Scan>, frame: CloudFrame, index: usize) -> O
     match frame {
         CloudFrame::Mesh => None,
         CloudFrame::Sensor => Some(scan.pose(index)),
-        CloudFrame::SensorAtStart => Some(scan.mounting.first()),
+        CloudFrame::SensorAtStart => Some(scan.ends[0]),
+        CloudFrame::SensorAtEnd => Some(scan.ends[1]),
     }
 }
