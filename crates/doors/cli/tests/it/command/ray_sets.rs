@@ -274,7 +274,7 @@ fn diff_compares_the_sets_too() {
     // Sets on one side only are named.
     fs::remove_dir_all(at.join("b/rays")).expect("a folder");
     let shown = screen(at, &["diff", "a", "b"], 1);
-    assert!(shown.contains("rays/down/face"), "{shown}");
+    assert!(shown.contains("rays/down/cos_incidence"), "{shown}");
 }
 
 #[test]
