@@ -65,6 +65,7 @@ ONLY_COMMAND = {
     "cast --bag": "arrays are returned",
     "cast --bag-dense": "arrays are returned",
     "cast --output": "arrays are returned",
+    "cast --pcd": "arrays are returned",
     "cast --ray": "`origins` and `directions`",
     "cast --scale": "vertices are an array: they can be multiplied",
     "cast --scans": "files alone: `cast_chunks` answers more rays than memory holds",
