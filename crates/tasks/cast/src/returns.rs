@@ -296,7 +296,8 @@ mod tests {
         };
         let first: Vec<Reading<FirstHit>> = rays.iter().map(hit).collect();
         let weights: Vec<f64> = rays.iter().map(|(_, weight)| *weight).collect();
-        let returns = BeamReturns::of_first(&first, Returns { keep, separation_m: 0.5 }, &weights);
+        let light = (weights.as_slice(), &EchoLight::default());
+        let returns = BeamReturns::of_first(&first, Returns { keep, separation_m: 0.5 }, light);
         returns.told().iter().flatten().copied().collect()
     }
 
