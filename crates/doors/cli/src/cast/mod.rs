@@ -298,8 +298,11 @@ impl Answered<'_> {
             text += &format!("\n{}", compared.text(self.rays));
         }
         if let Some(summary) = &self.summary {
-            let more =
-                if self.set.is_some() { ", report.html, point clouds and pictures" } else { ", report.html" };
+            let more = match (self.set, self.answers.counts()) {
+                (None, _) => ", report.html",
+                (Some(_), (0, _)) => ", report.html and point clouds",
+                (Some(_), _) => ", report.html, point clouds and pictures",
+            };
             text += &format!(
                 "\n{}\n  beside it: an array for each value, of shape {:?}{more}\n",
                 summary.display(),

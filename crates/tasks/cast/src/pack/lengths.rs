@@ -5,7 +5,7 @@ use raypencil_referee::ExactCast;
 use raypencil_scene::{CastRay, Sides};
 
 use super::clouds::fit::{median, rounded};
-use super::mistakes::{Extra, Trial};
+use super::mistakes::{Extra, Group, Trial};
 
 /// Rays from which a number is found, at least: of fewer, a number fits whatever is wrong.
 const MIN_FITTED: usize = 12;
@@ -38,18 +38,18 @@ pub(super) fn lengths(trial: &Trial, exact: &ExactCast<'_>, sides: Sides) -> Vec
         |of: fn(&[f64; 2]) -> f64| median(pairs.iter().map(of).collect()).map_or_else(Vec::new, rounded);
     let mut list = Vec::new();
     // Points may follow the lengths, or be right.
-    let mut add = |words: String, by: f64, undone: Undone| {
+    let mut add = |words: String, by: f64, undone: Undone, group: Group| {
         for with_points in [true, false] {
             let undo = move |trial: &mut Trial| undo(trial, by, undone, with_points);
-            list.push(Extra { words: words.clone(), undo: Box::new(undo), is_common: false });
+            list.push(Extra { words: words.clone(), undo: Box::new(undo), is_common: false, group });
         }
     };
     for by in found(|[stated, exact]| stated - exact) {
         let way = if by > 0.0 { "long" } else { "short" };
-        add(format!("lengths are {} too {way}", by.abs()), by, |length, by| length - by);
+        add(format!("lengths are {} too {way}", by.abs()), by, |length, by| length - by, Group::Others);
     }
     for by in found(|[stated, exact]| stated / exact).into_iter().filter(|by| *by > 0.0 && *by != 1.0) {
-        add(format!("lengths are {by} times what they are"), by, |length, by| length / by);
+        add(format!("lengths are {by} times what they are"), by, |length, by| length / by, Group::Factors);
     }
     list
 }

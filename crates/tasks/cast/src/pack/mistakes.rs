@@ -9,8 +9,11 @@ use crate::comparison::{Stated, compare_with};
 /// Rays on which mistakes are tried, at most.
 const MAX_TRIED: usize = 2000;
 
-/// Rays that are judged at a time: a mistake that explains nothing is given up after the first of them.
-const CHUNK_RAYS: usize = 64;
+/// Rays that are judged first: a mistake that explains nothing is given up after them.
+const FIRST_RAYS: usize = 64;
+
+/// Rays that are judged at a time after them.
+const NEXT_RAYS: usize = 4096;
 
 /// What explains why a candidate is wrong.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,6 +102,18 @@ pub(super) struct Extra<'a> {
     pub(super) undo: Box<dyn Fn(&mut Trial) + 'a>,
     /// Whether it is tried together with another one.
     pub(super) is_common: bool,
+    pub(super) group: Group,
+}
+
+/// Which mistakes take back what others do: two of one group are no pair.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Group {
+    /// Of lengths by a factor.
+    Factors,
+    /// Of the numbers of faces.
+    Numbers,
+    /// All others: any two are a pair.
+    Others,
 }
 
 /// A cloud in place of arrays: its points, and the mistakes of clouds.
@@ -158,10 +173,22 @@ fn misses_at(trial: &mut Trial, number: f64, other: f64) {
     each(&mut trial.stated.range, miss);
 }
 
-/// Conventions of arrays.
-const OF_ARRAYS: &[Mistake] = &[
+/// Conventions of the numbers of faces.
+const OF_NUMBERS: &[Mistake] = &[
     Mistake { words: "face indices are 1 too large: the first face is 0", undo: |trial| renumber(trial, -1) },
     Mistake { words: "face indices are 1 too small: the first face is 0", undo: |trial| renumber(trial, 1) },
+];
+
+/// Units of lengths.
+const OF_UNITS: &[Mistake] = &[
+    Mistake { words: "lengths are in thousandths of the mesh's unit", undo: |trial| scale(trial, 1e-3) },
+    Mistake { words: "lengths are in hundredths of the mesh's unit", undo: |trial| scale(trial, 1e-2) },
+    Mistake { words: "lengths are in thousands of the mesh's unit", undo: |trial| scale(trial, 1e3) },
+    Mistake { words: "lengths are in feet", undo: |trial| scale(trial, 0.3048) },
+];
+
+/// Conventions of arrays.
+const OF_ARRAYS: &[Mistake] = &[
     Mistake {
         words: "t.npy holds the range: t is the range over |d|",
         undo: |trial| {
@@ -176,10 +203,6 @@ const OF_ARRAYS: &[Mistake] = &[
             each(&mut trial.stated.range, |index, range| *range *= lengths[index]);
         },
     },
-    Mistake { words: "lengths are in thousandths of the mesh's unit", undo: |trial| scale(trial, 1e-3) },
-    Mistake { words: "lengths are in hundredths of the mesh's unit", undo: |trial| scale(trial, 1e-2) },
-    Mistake { words: "lengths are in thousands of the mesh's unit", undo: |trial| scale(trial, 1e3) },
-    Mistake { words: "lengths are in feet", undo: |trial| scale(trial, 0.3048) },
     Mistake {
         words: "points and normals are (x, -z, y) of the mesh's (x, y, z)",
         undo: |trial| axes(trial, |v| DVec3::new(v.x, v.z, -v.y)),
@@ -294,7 +317,13 @@ const OF_RULES: &[Mistake] = &[
 
 /// Numbers that mean no hit.
 const OF_MISSES: &[Mistake] = &[
-    Mistake { words: "0 means no hit: declare --miss 0", undo: |trial| misses_at(trial, 0.0, f64::INFINITY) },
+    Mistake {
+        words: "0 means no hit: declare --miss 0",
+        undo: |trial| {
+            misses_at(trial, 0.0, f64::INFINITY);
+            each(&mut trial.stated.face, |_, face| *face = face.filter(|face| face.0 != 0));
+        },
+    },
     Mistake {
         words: "-1 means no hit: declare --miss -1",
         undo: |trial| misses_at(trial, -1.0, f64::INFINITY),
@@ -337,15 +366,21 @@ struct Named<'a> {
     words: &'a str,
     undo: &'a dyn Fn(&mut Trial),
     is_common: bool,
+    group: Group,
 }
 
 impl<'a> Named<'a> {
-    fn of(mistake: &'a Mistake) -> Self {
-        Self { words: mistake.words, undo: &mistake.undo, is_common: true }
+    fn of(mistake: &'a Mistake, group: Group) -> Self {
+        Self { words: mistake.words, undo: &mistake.undo, is_common: true, group }
     }
 
     fn extra(extra: &'a Extra<'_>) -> Self {
-        Self { words: &extra.words, undo: &*extra.undo, is_common: extra.is_common }
+        Self { words: &extra.words, undo: &*extra.undo, is_common: extra.is_common, group: extra.group }
+    }
+
+    /// Whether it may be one of two with another.
+    fn pairs_with(&self, other: &Self) -> bool {
+        self.group == Group::Others || self.group != other.group
     }
 }
 
@@ -388,16 +423,18 @@ impl Trial {
 
     /// Number of wrong rays, or `None` as soon as there are more than `most`.
     fn wrong(&self, exact: &ExactCast<'_>, mesh: &Triangles, most: usize) -> Option<usize> {
-        let mut wrong = 0;
-        let indices: Vec<usize> = (0..self.rays.len()).collect();
-        for chunk in indices.chunks(CHUNK_RAYS) {
-            let rays = &self.rays[chunk[0]..chunk[0] + chunk.len()];
-            let stated = self.stated.some_of(chunk);
+        let (mut wrong, mut judged) = (0, 0);
+        while judged < self.rays.len() {
+            let end = judged + if judged == 0 { FIRST_RAYS } else { NEXT_RAYS };
+            let chunk: Vec<usize> = (judged..end.min(self.rays.len())).collect();
+            let rays = &self.rays[judged..judged + chunk.len()];
+            let stated = self.stated.some_of(&chunk);
             wrong +=
                 compare_with(exact, mesh, rays, self.sides, &stated, self.precision).counts().wrong as usize;
             if wrong > most {
                 return None;
             }
+            judged += chunk.len();
         }
         Some(wrong)
     }
@@ -421,14 +458,12 @@ pub(super) fn explain(
     wrong: &[usize],
 ) -> Option<Explanation> {
     // Wrong rays, and as many others: what is undone must not make these wrong.
-    let every = |all: usize| all.div_ceil(MAX_TRIED / 2).max(1);
-    let mut indices: Vec<usize> = wrong.iter().copied().step_by(every(wrong.len())).collect();
-    indices.extend((0..rays.len()).step_by(every(rays.len())));
+    let mut indices: Vec<usize> = sample(wrong.len()).map(|k| wrong[k]).chain(sample(rays.len())).collect();
     indices.sort_unstable();
     indices.dedup();
     // Wrong rays first: a mistake that does not explain them is given up after a few.
     indices.sort_by_key(|index| wrong.binary_search(index).is_err());
-    let trial = Trial {
+    let trial_of = |indices: Vec<usize>| Trial {
         rays: indices.iter().map(|&index| rays[index]).collect(),
         sides,
         stated: stated.some_of(&indices),
@@ -436,6 +471,17 @@ pub(super) fn explain(
         allowance: 0.0,
         cloud: of_cloud.map(|of_cloud| of_cloud.part.some_of(&indices)),
         indices,
+    };
+    let trial = trial_of(indices);
+    // What explains the sample has to explain all: a few right rays may say otherwise.
+    let explains_all = |mistakes: &[&Named<'_>]| {
+        let all = || trial_of((0..rays.len()).collect());
+        let without = |trial: Trial, mistake: &&Named<'_>| trial.without(mistake);
+        trial.indices.len() == rays.len()
+            || mistakes
+                .iter()
+                .try_fold(all(), without)
+                .is_some_and(|trial| trial.wrong(exact, mesh, wrong.len() / 100).is_some())
     };
     let before = trial.wrong(exact, mesh, usize::MAX)?;
     // An explanation leaves at most one in a hundred of them wrong.
@@ -445,26 +491,34 @@ pub(super) fn explain(
         |mistakes: Vec<String>, left: usize| Explanation { mistakes, agree: tried - left, tried };
     let about_sensors: &[Mistake] = if trial.is_about_sensors() { ABOUT_SENSORS } else { &[] };
     // The points of a cloud are no arrays: their conventions are its own.
-    let lists = match of_cloud {
-        None => [OF_ARRAYS, OF_RULES, OF_MISSES, about_sensors],
-        Some(of_cloud) if !of_cloud.has_ends => [&[], &[], &[], about_sensors],
-        Some(_) => [&[], OF_RULES, &[], about_sensors],
+    let lists: &[(&[Mistake], Group)] = match of_cloud {
+        None => &[
+            (OF_NUMBERS, Group::Numbers),
+            (OF_UNITS, Group::Factors),
+            (OF_ARRAYS, Group::Others),
+            (OF_RULES, Group::Others),
+            (OF_MISSES, Group::Others),
+        ],
+        Some(of_cloud) if !of_cloud.has_ends => &[],
+        Some(_) => &[(OF_RULES, Group::Others)],
     };
+    let lists = lists.iter().copied().chain([(about_sensors, Group::Others)]);
     let extras = of_cloud.iter().flat_map(|of_cloud| &of_cloud.extras).map(Named::extra);
-    let mistakes: Vec<Named<'_>> = extras.chain(lists.into_iter().flatten().map(Named::of)).collect();
+    let of_lists = lists.flat_map(|(list, group)| list.iter().map(move |mistake| Named::of(mistake, group)));
+    let mistakes: Vec<Named<'_>> = extras.chain(of_lists).collect();
     let estimated_of = |trial: &Trial| match of_cloud {
         Some(of_cloud) => (of_cloud.estimated)(trial),
         None => lengths(trial),
     };
     let estimated = estimated_of(&trial);
-    let precision = Named::of(&PRECISION);
-    let single = |mistake: &Named<'_>| {
-        Some((mistake.words.to_string(), trial.without(mistake)?.wrong(exact, mesh, most)?))
+    let precision = Named::of(&PRECISION, Group::Others);
+    let single = |mistake: Named<'_>| {
+        let left = trial.without(&mistake)?.wrong(exact, mesh, most)?;
+        explains_all(&[&mistake]).then(|| (mistake.words.to_string(), left))
     };
-    let estimated = estimated.iter().map(Named::extra);
-    let estimated: Vec<(String, usize)> = estimated.filter_map(|mistake| single(&mistake)).collect();
     // Single precision excuses much: it comes last.
-    let singles = mistakes.iter().filter_map(single).chain(estimated).chain(single(&precision));
+    let common = mistakes.iter().map(|mistake| Named { ..*mistake });
+    let singles = common.chain(estimated.iter().map(Named::extra)).chain([precision]).filter_map(single);
     if let Some((mistake, left)) = singles.min_by_key(|(_, left): &(String, usize)| *left) {
         return Some(explanation(vec![mistake], left));
     }
@@ -475,16 +529,36 @@ pub(super) fn explain(
         let estimated = estimated_of(&once);
         let others = mistakes.iter().skip(k + 1).filter(|second| second.is_common);
         let others = others.map(|second| Named { ..*second }).chain(estimated.iter().map(Named::extra));
-        for second in others {
+        for second in others.filter(|second| first.pairs_with(second)) {
             let most = match best {
                 Some((_, 0)) => return best.map(|(mistakes, left)| explanation(mistakes, left)),
                 Some((_, kept)) => kept - 1,
                 None => most,
             };
-            if let Some(left) = once.without(&second).and_then(|twice| twice.wrong(exact, mesh, most)) {
+            if let Some(left) = once.without(&second).and_then(|twice| twice.wrong(exact, mesh, most))
+                && explains_all(&[first, &second])
+            {
                 best = Some((vec![first.words.to_string(), second.words.to_string()], left));
             }
         }
     }
     best.map(|(mistakes, left)| explanation(mistakes, left))
+}
+
+/// Half of [`MAX_TRIED`] of so many, or all: one of each of as many equal parts. Which one is drawn, for parts of the length of a
+/// firing sequence would have the same channel each.
+fn sample(all: usize) -> impl Iterator<Item = usize> {
+    let every = all.div_ceil(MAX_TRIED / 2).max(1);
+    (0..all).step_by(every).map(move |start| {
+        let drawn = split_mix(start as u64) % every as u64;
+        (start + drawn as usize).min(all - 1)
+    })
+}
+
+/// The first number of the generator with this seed. (S. Vigna, splitmix64.c)
+fn split_mix(seed: u64) -> u64 {
+    let mut mixed = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    mixed ^ (mixed >> 31)
 }

@@ -415,6 +415,23 @@ fn a_head_that_turns_otherwise_is_told() {
             "offsets of the emitters are left out",
         );
     }
+    // The range of the ray that is fired, laid on from the middle of the head.
+    for mounting in [still(), bend()] {
+        let trial = Trial::new(&head(), &mounting);
+        let times = trial.set.times.as_ref().expect("times");
+        let mut points = points(&trial.set, CloudFrame::Sensor);
+        for ((point, ray), time) in points.iter_mut().zip(trial.set.set.rays()).zip(times) {
+            point.place -= mounting.at(*time).expect("a pose").inverse() * ray.origin;
+        }
+        let words = "if points are the range along their ray from the sensor's origin: the offsets of the emitters are left out";
+        trial.expect_why(&points, Fields::Keys, CloudFrame::Sensor, words);
+        // Half of them have no words: a unit and a factor that take each other back move points by the rest of the offset.
+        for ((point, ray), time) in points.iter_mut().zip(trial.set.set.rays()).zip(times) {
+            point.place += 0.5 * (mounting.at(*time).expect("a pose").inverse() * ray.origin);
+        }
+        let checked = trial.judge(&points, Fields::Keys, CloudFrame::Sensor);
+        assert!(!checked.passes() && checked.why.is_none(), "{:?}", checked.why);
+    }
     // A head that fires all at once: the sensor stands still, so that its times tell nothing else.
     let mounting = still();
     let trial = Trial::new(&head(), &mounting);

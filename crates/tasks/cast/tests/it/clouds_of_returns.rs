@@ -35,7 +35,12 @@ enum Fields {
 
 /// The head of 16 channels with beams of 30 mrad, 1 + 6 rays each: at 5 m a beam is 15 cm wide.
 fn set_of(mounting: &Mounting, keep: Keep) -> NamedRaySet {
-    let head = Spinning { steps: 20, azimuth_step_deg: -18.0, ..head() };
+    turn_of(20, mounting, keep)
+}
+
+/// A turn of that head in so many steps.
+fn turn_of(steps: u64, mounting: &Mounting, keep: Keep) -> NamedRaySet {
+    let head = Spinning { steps, azimuth_step_deg: -360.0 / steps as f64, ..head() };
     let cone = Cone { divergence_rad: 0.03, rings: 1 };
     let beams = cone.spread(&head.rays("rays").expect("rays"), "cone").expect("a cone");
     let beams = PatternRays { returns: Some(Returns { keep, separation_m: 0.5 }), ..beams };
@@ -254,6 +259,47 @@ fn returns_in_another_order_and_repeated_ones_are_told() {
         .collect();
     let words = "if a beam with fewer returns has one of them again: its other places are empty";
     trial.expect_why(&again, words);
+}
+
+#[test]
+fn what_right_beams_contradict_is_not_told() {
+    // A plate before a wall: no beam has three returns.
+    let square = |x: f64, [y, z]: [f64; 2], half: f64| {
+        [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+            .map(|[across, up]| [x, y + half * across, z + half * up])
+    };
+    let [wall, plate] = [square(12.0, [0.5, 1.5], 9.0), square(4.0, [0.5, 1.5], 1.0)];
+    let faces = vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]];
+    let mesh = Triangles::new([wall, plate].concat(), faces).expect("two squares");
+    // 1920 places, of which every second one is a second return: a sample of each other place would see none of them.
+    let trial = Trial::new(mesh, turn_of(60, &still(), Keep::UpTo(2)));
+    let right = trial.right();
+    let seconds: Vec<usize> =
+        (0..right.len()).filter(|k| k % 2 == 1 && right[*k].place.is_finite()).collect();
+    assert!(seconds.len() > 5, "{}", seconds.len());
+    let mut points = right.clone();
+    points[seconds[3]].place = DVec3::NAN;
+    for checked in trial.judge_all(&points) {
+        assert_eq!((checked.comparison.counts().wrong, checked.why), (1, None));
+    }
+}
+
+#[test]
+fn numbers_of_returns_from_0_are_told() {
+    for keep in [Keep::UpTo(2), Keep::UpTo(3)] {
+        let trial = Trial::of_room(&still(), keep);
+        // Of three returns two may be told, with the numbers 1 and 3: from 0 they are 0 and 2.
+        let from = |by: i64| -> Vec<Point> {
+            let of = |point: Point| Point { number: (i64::from(point.number) + by) as u32, ..point };
+            trial.right().into_iter().filter(|point| point.place.is_finite()).map(of).collect()
+        };
+        let check = |points: &[Point]| {
+            trial.check(&trial.write(points, Fields::Numbers), Precision::F64).expect("a check")
+        };
+        expect(&check(&from(-1)), "if the numbers of returns count from 0: the nearest is 1");
+        let from_two = check(&from(1));
+        assert!(!from_two.passes() && from_two.why.is_none(), "{:?}", from_two.why);
+    }
 }
 
 #[test]

@@ -233,6 +233,22 @@ fn a_number_for_no_hit_must_be_declared() {
     let declared = CandidateConventions { miss: Some(0.0), ..CandidateConventions::default() };
     assert!(folders.check_by(Precision::F64, declared).passes());
     folders.expect_why(&["declare --miss 0"]);
+    // Faces alone, of which the first is hit by no ray.
+    let mut corners = vec![[100.0, 0.0, 0.0], [101.0, 0.0, 0.0], [100.0, 1.0, 0.0]];
+    corners.extend([[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [0.0, 8.0, 0.0]]);
+    let mesh = Triangles::new(corners, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+    let text: String = (0..64).map(|k| format!("{}.5,{}.5,1,0,0,-1\n", k % 8, k / 8)).collect();
+    let rays = rays_from_bytes(text.as_bytes(), "here".as_ref()).unwrap();
+    let [pack, candidate] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+    write_ray_pack(pack.path(), (&mesh, &rays, Sides::Both), &source(), &Silent).unwrap();
+    let first = cast(&mesh, &rays.rays, Sides::Both, Questions::default(), &Silent).first;
+    let faces: Vec<f64> = first.iter().map(|read| f64::from(u8::from(read.hit().is_some()))).collect();
+    write_npy_numbers(candidate.path().join("face.npy"), &[64], &faces).unwrap();
+    let conventions = CandidateConventions::default();
+    let checked =
+        check_ray_pack(pack.path(), candidate.path(), Precision::F64, conventions, &Silent).unwrap();
+    let why = checked.why.expect("a reason");
+    assert!(why.ends_with("if 0 means no hit: declare --miss 0"), "{why}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use raypencil_scene::{CastRay, Pose};
 
-use crate::pack::mistakes::{CloudPart, Extra, Trial};
+use crate::pack::mistakes::{CloudPart, Extra, Group, Trial};
 use crate::pack::scan::{Scan, moved};
 
 /// Mistakes, one after the other.
@@ -13,7 +13,19 @@ pub(super) struct List<'a> {
 
 impl<'a> List<'a> {
     pub(super) fn add(&mut self, words: impl Into<String>, is_common: bool, undo: impl Fn(&mut Trial) + 'a) {
-        self.extras.push(Extra { words: words.into(), undo: Box::new(undo), is_common });
+        let group = Group::Others;
+        self.extras.push(Extra { words: words.into(), undo: Box::new(undo), is_common, group });
+    }
+
+    /// A mistake of lengths by a factor.
+    pub(super) fn add_factor(
+        &mut self,
+        words: impl Into<String>,
+        is_common: bool,
+        undo: impl Fn(&mut Trial) + 'a,
+    ) {
+        let group = Group::Factors;
+        self.extras.push(Extra { words: words.into(), undo: Box::new(undo), is_common, group });
     }
 
     /// A mistake about the rays: `head` gives the ray in the pattern's frame that was fired in place of the asked one.

@@ -53,7 +53,7 @@ pub(in crate::pack) fn of_cloud<'a>(
         of_depth(&mut list, case, scan);
     }
     for (words, factor) in LENGTHS {
-        list.add(words, true, move |trial| scaled(trial, factor));
+        list.add_factor(words, true, move |trial| scaled(trial, factor));
     }
     list.add("points at (0, 0, 0) mean no hit: declare --miss 0", true, |trial| {
         for point in parts(trial).iter_mut().filter(|point| **point == DVec3::ZERO) {
@@ -144,6 +144,16 @@ fn of_head<'a>(list: &mut List<'a>, case: &'a CloudCase<'a>, scan: &'a Scan) {
     if case.rays.iter().enumerate().any(starts_off) {
         let words = "rays start at the sensor's origin: the offsets of the emitters are left out";
         list.add_ray(words, true, scan, |_, ray| CastRay { origin: DVec3::ZERO, ..ray });
+        let words = "points are the range along their ray from the sensor's origin: the offsets of the emitters are left out";
+        list.add(words, true, move |trial| {
+            let Some(cloud) = &mut trial.cloud else { return };
+            for (k, &index) in trial.indices.iter().enumerate() {
+                let pose = scan.pose(index);
+                let offset = case.rays[index].origin - pose.position;
+                let point = cloud.point(k).0 + offset;
+                cloud.raw[k] = cloud.pose[k].map_or(point, |pose| pose.inverse() * point);
+            }
+        });
     }
     let Some(turn) = Turn::of(scan, case.shape, case.rays) else { return };
     let Turn { channels, step_deg, .. } = turn;
@@ -353,7 +363,7 @@ fn estimate<'a>(
         median(pairs.iter().map(|(stated, exact)| stated / exact).collect()).map_or_else(Vec::new, rounded)
     {
         if by != 1.0 && by > 0.0 {
-            list.add(format!("ranges are {by} times what they are"), false, move |trial| {
+            list.add_factor(format!("ranges are {by} times what they are"), false, move |trial| {
                 along(trial, |_, _, length| length / by);
             });
         }

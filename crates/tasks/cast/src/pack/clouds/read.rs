@@ -49,8 +49,8 @@ pub(in crate::pack) struct CloudCase<'a> {
     pub(in crate::pack) scan: Option<&'a Scan>,
     /// What is known of the returns of beams; `None`: rays stand for themselves.
     pub(in crate::pack) beams: Option<&'a Beams>,
-    /// Whether the file has numbers of returns.
-    pub(in crate::pack) has_numbers: bool,
+    /// The least number of a return that the file has; `None`: it has no such numbers.
+    pub(in crate::pack) least_number: Option<f64>,
     pub(in crate::pack) frame: CloudFrame,
     pub(in crate::pack) part: CloudPart,
     pub(in crate::pack) facts: CloudFacts,
@@ -182,6 +182,10 @@ pub(in crate::pack) fn read_cloud_of<'a>(
     let of_usual = asked.by_keys(&cloud, &is_point, Keys::of(usual));
     let wrong_keys = of_usual.as_ref().map_or_else(Vec::new, |of_usual| said.unlike(&found, of_usual));
     let keys_why = if wrong_keys.is_empty() { None } else { said.why(&found, &exchanged) };
+    let least_number = number_of_return(&cloud).and_then(|column| {
+        let numbers = (0..is_point.len()).filter(|&point| is_point[point]).map(|point| column.values[point]);
+        numbers.min_by(f64::total_cmp)
+    });
     let facts = CloudFacts {
         wrong_keys,
         keys_why,
@@ -198,7 +202,7 @@ pub(in crate::pack) fn read_cloud_of<'a>(
         rays,
         scan,
         beams,
-        has_numbers: number_of_return(&cloud).is_some(),
+        least_number,
         frame,
         part,
         facts,
