@@ -168,7 +168,8 @@ def test_sets_of_rays_are_arrays_and_answered_as_by_the_command(command: Command
 def test_returns_of_beams_are_those_of_the_files(command: Command, tmp_path: Path) -> None:
     grid = "{ grid = { columns = 12, rows = 6, width_deg = 90, height_deg = 50 } }"
     # Air so thick that it decides which return is the strongest.
-    for keep, extinction in [("first", 0.0), ("strongest", 0.0), ("strongest", 0.75), ("last", 0.0), (2, 0.0)]:
+    rules: list[tuple[str | int, float]] = [("first", 0.0), ("strongest", 0.0), ("strongest", 0.75), ("last", 0.0), (2, 0.0)]
+    for keep, extinction in rules:
         asked = f"{{ keep = {keep!r}, separation_m = 0.25 }}"
         text = SMALL + (
             f'[[rays]]\nname = "wide"\ncone = {{ of = {grid}, divergence_mrad = 60, rings = 2, returns = {asked} }}\n'
