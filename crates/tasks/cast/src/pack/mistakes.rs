@@ -512,15 +512,18 @@ pub(super) fn explain(
     };
     let estimated = estimated_of(&trial);
     let precision = Named::of(&PRECISION, Group::Others);
-    let single = |mistake: Named<'_>| {
+    let single = |mistake| {
         let left = trial.without(&mistake)?.wrong(exact, mesh, most)?;
-        explains_all(&[&mistake]).then(|| (mistake.words.to_string(), left))
+        Some((mistake, left))
     };
     // Single precision excuses much: it comes last.
     let common = mistakes.iter().map(|mistake| Named { ..*mistake });
-    let singles = common.chain(estimated.iter().map(Named::extra)).chain([precision]).filter_map(single);
-    if let Some((mistake, left)) = singles.min_by_key(|(_, left): &(String, usize)| *left) {
-        return Some(explanation(vec![mistake], left));
+    let singles = common.chain(estimated.iter().map(Named::extra)).chain([precision]);
+    let mut singles: Vec<(Named<'_>, usize)> = singles.filter_map(single).collect();
+    // All rays are asked of the best one first: mostly it holds, and no other is asked.
+    singles.sort_by_key(|(_, left)| *left);
+    if let Some((mistake, left)) = singles.into_iter().find(|(mistake, _)| explains_all(&[mistake])) {
+        return Some(explanation(vec![mistake.words.to_string()], left));
     }
     // Both of a pair change something: else the pair is a single mistake.
     let mut best: Option<(Vec<String>, usize)> = None;

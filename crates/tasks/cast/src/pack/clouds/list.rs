@@ -12,9 +12,12 @@ pub(super) struct List<'a> {
 }
 
 impl<'a> List<'a> {
+    fn push(&mut self, words: String, (is_common, group): (bool, Group), undo: impl Fn(&mut Trial) + 'a) {
+        self.extras.push(Extra { words, undo: Box::new(undo), is_common, group });
+    }
+
     pub(super) fn add(&mut self, words: impl Into<String>, is_common: bool, undo: impl Fn(&mut Trial) + 'a) {
-        let group = Group::Others;
-        self.extras.push(Extra { words: words.into(), undo: Box::new(undo), is_common, group });
+        self.push(words.into(), (is_common, Group::Others), undo);
     }
 
     /// A mistake of lengths by a factor.
@@ -24,8 +27,7 @@ impl<'a> List<'a> {
         is_common: bool,
         undo: impl Fn(&mut Trial) + 'a,
     ) {
-        let group = Group::Factors;
-        self.extras.push(Extra { words: words.into(), undo: Box::new(undo), is_common, group });
+        self.push(words.into(), (is_common, Group::Factors), undo);
     }
 
     /// A mistake about the rays: `head` gives the ray in the pattern's frame that was fired in place of the asked one.
