@@ -59,6 +59,7 @@
 
 mod cast;
 mod hits;
+mod lanes;
 mod light;
 mod margins;
 mod numbers;

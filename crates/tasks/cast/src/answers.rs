@@ -326,9 +326,9 @@ fn first_of(
     rays: &[CastRay],
     sides: Sides,
 ) -> (Vec<Reading<FirstHit>>, DecidedCounts) {
-    let (mut first, mut decided) = (Vec::with_capacity(rays.len()), DecidedCounts::default());
-    exact.first_meetings(rays, sides, |_, read, decided_by| {
-        first.push(read.map(|(meeting, ties)| first_hit(&meeting, ties)));
+    let (mut first, mut decided) = (vec![Reading::Miss; rays.len()], DecidedCounts::default());
+    exact.first_meetings(rays, sides, |index, read, decided_by| {
+        first[index] = read.as_ref().map(|(meeting, ties)| first_hit(meeting, *ties));
         decided.add(decided_by);
     });
     (first, decided)

@@ -276,7 +276,7 @@ impl ColumnsPart<'_> {
         match caster {
             Caster::Referee(exact) => {
                 exact.first_meetings(rays, sides, |index, read, decided_by| {
-                    self.put(index, &read, &mut counts);
+                    self.put(index, read, &mut counts);
                     counts.decided.add(decided_by);
                 });
             }

@@ -10,6 +10,8 @@ use super::source::{crates, root};
 const MAY: &[(&str, &str)] = &[
     // Arrays of NumPy on memory of ours.
     ("python", "src/mesh.rs"),
+    // Code for fused operations, and hints to the processor's memory.
+    ("referee", "src/lanes.rs"),
     // Code for AVX2.
     ("tracer", "src/lanes.rs"),
 ];

@@ -24,9 +24,9 @@ use std::cmp::Ordering;
 use raypencil_scene::{CastRay, FaceId, Side, Sides};
 
 use super::ExactCast;
-use super::quads::Next;
 use super::query_ray::{Polynomial, QueryRay, RayNumbers};
 use super::triangle::{Met, Triangle};
+use super::wide_tree::Next;
 use crate::numbers::number::Number;
 
 /// A face that is met, and the side that is.

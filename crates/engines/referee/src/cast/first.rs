@@ -1,14 +1,16 @@
 //! The nearest hit with its ties, what a sensor reads of it, and whether anything is hit.
 
 use std::cmp::Ordering;
+use std::iter::Enumerate;
+use std::slice;
 
 use raypencil_scene::{CastRay, FaceId, Reading, Side, Sides};
 
-use super::quads::{Next, TOGETHER};
 use super::query_ray::{DecidedBy, QueryRay};
 use super::triangle::{Met, Triangle};
 use super::values::CastMeeting;
-use super::{ExactCast, moved_bundle, walk_bundle};
+use super::wide_tree::{FrameRay, Next, Rays, TOGETHER, how_many_together};
+use super::{ExactCast, bundle, moved_bundle, walk_bundle};
 
 impl ExactCast<'_> {
     /// The faces met at the smallest t, in ascending order: several if they are met at exactly the same t, none if the
@@ -62,11 +64,11 @@ impl ExactCast<'_> {
         let query = QueryRay::new(ray);
         let mut nearest = Nearest::new(sides);
         self.walk(ray, |face| nearest.see(face, &query));
-        nearest.meeting(ray, query).0
+        nearest.meeting(ray, &query).0
     }
 
     /// [`first_meeting`](Self::first_meeting) of many rays, which is quicker than one after the other: `each` gets the index of every
-    /// ray, in their order, what it reads, and which arithmetic decided that.
+    /// ray, in no particular order, what it reads, and which arithmetic decided that.
     ///
     /// ```
     /// use glam::DVec3;
@@ -81,6 +83,7 @@ impl ExactCast<'_> {
     /// ExactCast::new(&triangle).first_meetings(&rays, Sides::Both, |k, read, decided_by| {
     ///     hits.extend(read.hit().map(|(meeting, _)| (k, meeting.t().double, decided_by)));
     /// });
+    /// hits.sort_by_key(|hit| hit.0);
     /// // The last one passes the edge itself.
     /// assert_eq!(hits, [(0, 1.0, DecidedBy::Filter), (2, 1.0, DecidedBy::Exact)]);
     /// # Ok::<(), raypencil_scene::SceneError>(())
@@ -89,20 +92,30 @@ impl ExactCast<'_> {
         &self,
         rays: &'r [CastRay],
         sides: Sides,
-        mut each: impl FnMut(usize, Reading<(CastMeeting<'r>, u32)>, DecidedBy),
+        mut each: impl FnMut(usize, &Reading<(CastMeeting<'r>, u32)>, DecidedBy),
     ) {
-        let mut queries = Vec::with_capacity(TOGETHER);
-        for (part, rays) in rays.chunks(TOGETHER).enumerate() {
-            queries.extend(rays.iter().map(|ray| (QueryRay::new(ray), Nearest::new(sides))));
-            self.walk_together(rays, |index, face| {
-                let (query, nearest) = &mut queries[index];
-                nearest.see(face, query)
-            });
-            for (index, (query, nearest)) in queries.drain(..).enumerate() {
+        self.walk_to_first(rays, sides, &mut each);
+    }
+
+    /// [`first_meetings`](Self::first_meetings), compiled once, with this crate's optimisation.
+    #[inline(never)]
+    fn walk_to_first<'r>(
+        &self,
+        rays: &'r [CastRay],
+        sides: Sides,
+        each: &mut dyn FnMut(usize, &Reading<(CastMeeting<'r>, u32)>, DecidedBy),
+    ) {
+        let mut walks = FirstWalks {
+            cast: self,
+            sides,
+            rays: rays.iter().enumerate(),
+            places: [const { None }; TOGETHER],
+            each: |index, query: &QueryRay<'r>, nearest: &Nearest| {
                 let (read, decided_by) = nearest.meeting(&rays[index], query);
-                each(part * TOGETHER + index, read, decided_by);
-            }
-        }
+                each(index, &read, decided_by);
+            },
+        };
+        self.tree.wide.walk_together(self.mesh.vertices(), &mut walks, how_many_together(rays));
     }
 
     /// What the ray's sensor reads of the nearest faces.
@@ -151,15 +164,16 @@ impl ExactCast<'_> {
 
     /// [`any`](Self::any) of many rays, in their order, which is quicker than one after the other.
     pub fn any_of(&self, rays: &[CastRay], sides: Sides) -> Vec<bool> {
-        let mut all_met = vec![false; rays.len()];
-        for (rays, is_met) in rays.chunks(TOGETHER).zip(all_met.chunks_mut(TOGETHER)) {
-            let queries: Vec<QueryRay<'_>> = rays.iter().map(QueryRay::new).collect();
-            self.walk_together(rays, |index, face| {
-                is_met[index] = is_met[index] || face.met_side(&queries[index], sides).is_some();
-                if is_met[index] { Next::Stop } else { Next::On }
-            });
-        }
-        all_met
+        let mut is_met = vec![false; rays.len()];
+        let mut walks = AnyWalks {
+            cast: self,
+            sides,
+            rays: rays.iter().enumerate(),
+            places: [const { None }; TOGETHER],
+            is_met: &mut is_met,
+        };
+        self.tree.wide.walk_together(self.mesh.vertices(), &mut walks, how_many_together(rays));
+        is_met
     }
 
     /// The nearest faces, in ascending order.
@@ -169,6 +183,83 @@ impl ExactCast<'_> {
         self.walk(ray, |face| nearest.see(face, &query));
         nearest.sorted()
     }
+}
+
+/// Many rays on their way to their nearest faces; `each` gets the index of every ray whose way is over.
+struct FirstWalks<'c, 'r, E> {
+    cast: &'c ExactCast<'c>,
+    sides: Sides,
+    rays: Enumerate<slice::Iter<'r, CastRay>>,
+    places: [Option<(usize, QueryRay<'r>, Nearest)>; TOGETHER],
+    each: E,
+}
+
+impl<'r, E: FnMut(usize, &QueryRay<'r>, &Nearest)> Rays for FirstWalks<'_, 'r, E> {
+    #[inline]
+    fn begin(&mut self, place: usize) -> Option<FrameRay> {
+        loop {
+            let (index, ray) = self.rays.next()?;
+            let (query, mut nearest) = (QueryRay::new(ray), Nearest::new(self.sides));
+            match self.cast.tree.wide.ray(ray) {
+                Some(in_frame) => {
+                    self.places[place] = Some((index, query, nearest));
+                    return Some(in_frame);
+                }
+                None => {
+                    walk_bundle(&self.cast.tree.bvh, &bundle(ray), ray, |face| nearest.see(face, &query));
+                    (self.each)(index, &query, &nearest);
+                }
+            }
+        }
+    }
+
+    #[inline]
+    fn see(&mut self, place: usize, face: &Triangle) -> Next {
+        let Some((_, query, nearest)) = &mut self.places[place] else { return Next::Stop };
+        nearest.see(face, query)
+    }
+
+    #[inline]
+    fn end(&mut self, place: usize) {
+        if let Some((index, query, nearest)) = &self.places[place] {
+            (self.each)(*index, query, nearest);
+        }
+    }
+}
+
+/// Many rays on their way to any face.
+struct AnyWalks<'c, 'r> {
+    cast: &'c ExactCast<'c>,
+    sides: Sides,
+    rays: Enumerate<slice::Iter<'r, CastRay>>,
+    places: [Option<(usize, QueryRay<'r>)>; TOGETHER],
+    is_met: &'c mut [bool],
+}
+
+impl Rays for AnyWalks<'_, '_> {
+    #[inline]
+    fn begin(&mut self, place: usize) -> Option<FrameRay> {
+        loop {
+            let (index, ray) = self.rays.next()?;
+            match self.cast.tree.wide.ray(ray) {
+                Some(in_frame) => {
+                    self.places[place] = Some((index, QueryRay::new(ray)));
+                    return Some(in_frame);
+                }
+                None => self.is_met[index] = self.cast.any(ray, self.sides),
+            }
+        }
+    }
+
+    #[inline]
+    fn see(&mut self, place: usize, face: &Triangle) -> Next {
+        let Some((index, query)) = &self.places[place] else { return Next::Stop };
+        self.is_met[*index] = face.met_side(query, self.sides).is_some();
+        if self.is_met[*index] { Next::Stop } else { Next::On }
+    }
+
+    #[inline]
+    fn end(&mut self, _: usize) {}
 }
 
 /// The nearest of the faces that a ray meets.
@@ -210,21 +301,20 @@ impl Nearest {
     }
 
     /// What the ray's sensor reads of them, and what decided it.
+    #[inline]
     fn meeting<'r>(
         &self,
         ray: &'r CastRay,
-        query: QueryRay<'r>,
+        query: &QueryRay<'r>,
     ) -> (Reading<(CastMeeting<'r>, u32)>, DecidedBy) {
         let lowest = self.lowest();
         let is_too_near =
-            lowest.is_some_and(|(face, _)| ray.t_blind > 0.0 && face.is_before(ray.t_blind, &query));
+            lowest.is_some_and(|(face, _)| ray.t_blind > 0.0 && face.is_before(ray.t_blind, query));
         let decided_by = query.decided_by();
         let read = match lowest {
             None => Reading::Miss,
             Some(_) if is_too_near => Reading::TooNear,
-            Some((face, side)) => {
-                Reading::Hit((CastMeeting::new(ray, query, face, side), self.count() as u32))
-            }
+            Some((face, side)) => Reading::Hit((CastMeeting::new(ray, face, side), self.count() as u32)),
         };
         (read, decided_by)
     }

@@ -19,7 +19,7 @@
 //! ```text
 //! query_ray   one ray in both numbers: intervals, and exactly where these are in doubt
 //! triangle    one face, and the conditions above
-//! quads       which faces a ray may meet, four at once
+//! wide_tree   which faces a ray may meet, four at once
 //! first       the nearest hit with its ties, what a sensor reads of it, and whether anything is hit
 //! all         all hits in exact order, and how often the surface is crossed
 //! values      the values of a hit, correctly rounded
@@ -33,11 +33,11 @@
 mod all;
 mod first;
 mod margin;
-mod quads;
 mod query_ray;
 mod ruling;
 mod triangle;
 mod values;
+mod wide_tree;
 
 use std::sync::{Arc, OnceLock};
 
@@ -47,9 +47,9 @@ use raypencil_scene::{CastRay, FaceId, Triangles};
 
 use crate::trees::bvh::{Bvh, RayBundle};
 use margin::Seams;
-use quads::{Next, Quads, TOGETHER};
 use query_ray::QueryRay;
 use triangle::Triangle;
+use wide_tree::{Next, WideTree};
 
 pub use all::{HitGroup, SidedFace};
 pub use query_ray::DecidedBy;
@@ -121,7 +121,7 @@ impl CastTree {
 struct Tree {
     bvh: Bvh<Triangle>,
     /// The same for rays that are not moved.
-    quads: Quads,
+    wide: WideTree,
     /// The diagonal of the mesh's bounding box, to which margins are capped.
     diagonal: f64,
     /// The largest coordinate of a vertex.
@@ -138,9 +138,9 @@ impl Tree {
             faces.retain(Triangle::has_area);
         }
         let [low, high] = mesh.bounds().unwrap_or_default();
-        let quads = Quads::of(&faces);
+        let wide = WideTree::of(mesh, &faces);
         Self {
-            quads,
+            wide,
             bvh: Bvh::build(faces),
             diagonal: length(high - low),
             largest_coordinate: low.abs().max(high.abs()).max_element(),
@@ -175,26 +175,10 @@ impl<'t> ExactCast<'t> {
     /// Shows the faces that the ray may meet, and others, nearer ones first, until it is enough.
     #[inline]
     fn walk(&self, ray: &CastRay, visit: impl FnMut(&Triangle) -> Next) {
-        let Tree { bvh, quads, .. } = &*self.tree;
-        match quads.ray(ray) {
-            Some(in_frame) => quads.walk(&in_frame, visit),
+        let Tree { bvh, wide, .. } = &*self.tree;
+        match wide.ray(ray) {
+            Some(in_frame) => wide.walk(self.mesh.vertices(), &in_frame, visit),
             None => walk_bundle(bvh, &bundle(ray), ray, visit),
-        }
-    }
-
-    /// [`walk`](Self::walk) for at most [`TOGETHER`] rays; `visit` gets the index of the ray, too.
-    #[inline]
-    fn walk_together(&self, rays: &[CastRay], mut visit: impl FnMut(usize, &Triangle) -> Next) {
-        let Tree { bvh, quads, .. } = &*self.tree;
-        let mut in_frame = [const { None }; TOGETHER];
-        for (in_frame, ray) in in_frame.iter_mut().zip(rays) {
-            *in_frame = quads.ray(ray);
-        }
-        quads.walk_together(&in_frame[..rays.len()], &mut visit);
-        for (index, ray) in rays.iter().enumerate() {
-            if in_frame[index].is_none() {
-                walk_bundle(bvh, &bundle(ray), ray, |face| visit(index, face));
-            }
         }
     }
 

@@ -38,27 +38,28 @@ pub(super) trait Polynomial {
     fn value<T: Number>(&self, ray: &RayNumbers<T>) -> T;
 }
 
-/// One ray; its exact numbers are formed when they are first needed.
+/// One ray; its intervals and its exact numbers are formed when they are first needed.
 pub(super) struct QueryRay<'r> {
     ray: &'r CastRay,
     /// By how much the ray is moved sideways, if it is.
     moved: Option<[f64; 2]>,
     filter: EdgeFilter,
-    fast: RayNumbers<Interval>,
-    /// Apart, for it is large and rare.
+    /// Apart, for they are large and rare.
+    fast: OnceCell<Box<RayNumbers<Interval>>>,
     exact: OnceCell<Box<RayNumbers<Dyadic>>>,
     /// What has decided its signs so far.
     decided: Cell<DecidedBy>,
 }
 
 impl<'r> QueryRay<'r> {
+    #[inline]
     pub(super) fn new(ray: &'r CastRay) -> Self {
         let filter = EdgeFilter::exactly(ray.origin, ray.direction);
         Self {
             ray,
             moved: None,
             filter,
-            fast: RayNumbers::of(ray),
+            fast: OnceCell::new(),
             exact: OnceCell::new(),
             decided: Cell::default(),
         }
@@ -71,6 +72,7 @@ impl<'r> QueryRay<'r> {
         let one = Interval::of(1.0);
         let filter =
             EdgeFilter::new(&ScaledRay { origin, origin_scale: one, direction, direction_scale: one });
+        let fast = OnceCell::from(Box::new(fast));
         Self { ray, moved: Some(by), filter, fast, exact: OnceCell::new(), decided: Cell::default() }
     }
 
@@ -95,7 +97,8 @@ impl<'r> QueryRay<'r> {
 
     /// The ray in intervals.
     pub(super) fn fast(&self) -> &RayNumbers<Interval> {
-        &self.fast
+        // That of a moved ray stands there already.
+        self.fast.get_or_init(|| Box::new(RayNumbers::of(self.ray)))
     }
 
     /// The ray without rounding.
@@ -148,7 +151,7 @@ impl<'r> QueryRay<'r> {
     /// The exact sign: by the interval if that is certain, else by exact arithmetic.
     #[inline]
     pub(super) fn sign(&self, polynomial: &impl Polynomial) -> Ordering {
-        self.sign_or(polynomial.value(&self.fast), polynomial)
+        self.sign_or(polynomial.value(self.fast()), polynomial)
     }
 
     /// The exact sign of a polynomial of which the interval is known.

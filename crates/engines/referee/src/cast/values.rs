@@ -19,7 +19,7 @@ use super::ExactCast;
 use super::query_ray::{QueryRay, RayNumbers};
 use super::triangle::Triangle;
 use crate::hits::intersection::{minus, sign_of};
-use crate::numbers::double_double::{DoubleDouble, PlaneCrossing};
+use crate::numbers::double_double::{DoubleDouble, PlaneCrossing, crossing_parameter};
 use crate::numbers::number::{Dyadic, Number};
 use crate::numbers::rounding::{Rounded, quotient, root};
 use crate::numbers::vector::Vector;
@@ -57,7 +57,7 @@ impl ExactCast<'_> {
         let face = self.triangle(face).filter(Triangle::has_area)?;
         let query = QueryRay::new(ray);
         let side = face.met_side(&query, Sides::Both)?;
-        Some(CastMeeting::new(ray, query, face, side))
+        Some(CastMeeting::new(ray, face, side))
     }
 
     /// The values of the first hit: of the lowest of its faces, if these tie. `None` if nothing is met.
@@ -65,14 +65,12 @@ impl ExactCast<'_> {
         let face = *self.nearest(ray, sides).first()?;
         let query = QueryRay::new(ray);
         let side = face.met_side(&query, sides)?;
-        Some(CastMeeting::new(ray, query, face, side).hit())
+        Some(CastMeeting::new(ray, face, side).hit())
     }
 }
 
 /// The polynomials of a ray and a face from which all values follow. Each is formed when it is first asked for.
 struct Meeting<T> {
-    ray: RayNumbers<T>,
-    face: Triangle,
     normal: Vector<T>,
     height: OnceCell<T>,
     approach: OnceCell<T>,
@@ -81,33 +79,31 @@ struct Meeting<T> {
 }
 
 impl<T: Number> Meeting<T> {
-    fn new(ray: RayNumbers<T>, face: &Triangle) -> Self {
+    fn of(face: &Triangle) -> Self {
         Self {
-            face: *face,
             normal: face.normal::<T>(),
             height: OnceCell::new(),
             approach: OnceCell::new(),
             direction_squared: OnceCell::new(),
             normal_squared: OnceCell::new(),
-            ray,
         }
     }
 
     /// h.
-    fn height(&self) -> &T {
+    fn height(&self, ray: &RayNumbers<T>, face: &Triangle) -> &T {
         self.height.get_or_init(|| {
             // a' = a - o.
-            self.normal.dot(&self.face.corner(0).sub(&self.ray.origin))
+            self.normal.dot(&face.corner(0).sub(&ray.origin))
         })
     }
 
     /// g.
-    fn approach(&self) -> &T {
-        self.approach.get_or_init(|| self.normal.dot(&self.ray.direction))
+    fn approach(&self, ray: &RayNumbers<T>) -> &T {
+        self.approach.get_or_init(|| self.normal.dot(&ray.direction))
     }
 
-    fn direction_squared(&self) -> &T {
-        self.direction_squared.get_or_init(|| self.ray.direction.length_squared())
+    fn direction_squared(&self, ray: &RayNumbers<T>) -> &T {
+        self.direction_squared.get_or_init(|| ray.direction.length_squared())
     }
 
     fn normal_squared(&self) -> &T {
@@ -115,21 +111,18 @@ impl<T: Number> Meeting<T> {
     }
 
     /// g P.
-    fn point(&self, k: usize) -> T {
-        self.ray.origin.0[k].mul(self.approach()).add(&self.ray.direction.0[k].mul(self.height()))
+    fn point(&self, k: usize, ray: &RayNumbers<T>, face: &Triangle) -> T {
+        ray.origin.0[k].mul(self.approach(ray)).add(&ray.direction.0[k].mul(self.height(ray, face)))
     }
 }
 
 impl Meeting<DoubleDouble> {
     /// The same with [`PlaneCrossing`], which is quick, where that knows the crossing.
     fn quickly(ray: &CastRay, face: &Triangle) -> Self {
-        let numbers = RayNumbers::of(ray);
         let Some(crossing) = PlaneCrossing::of(ray.origin, ray.direction, face.corners) else {
-            return Self::new(numbers, face);
+            return Self::of(face);
         };
         Self {
-            ray: numbers,
-            face: *face,
             normal: Vector(crossing.normal),
             height: OnceCell::from(crossing.height),
             approach: OnceCell::from(crossing.approach),
@@ -139,16 +132,22 @@ impl Meeting<DoubleDouble> {
     }
 }
 
+/// Numbers of one arithmetic.
+struct Numbers<T> {
+    ray: RayNumbers<T>,
+    meeting: Meeting<T>,
+}
+
 /// Where a ray meets a face. Each value is formed when it is asked for, correctly rounded: first in pairs of f64 with a proven
 /// error, and exactly where these do not decide the rounding.
 pub struct CastMeeting<'r> {
-    query: QueryRay<'r>,
+    ray: &'r CastRay,
     face: Triangle,
     side: Side,
+    t: OnceCell<DoubleDouble>,
     fast: OnceCell<Meeting<DoubleDouble>>,
     /// Apart, for it is large and rare.
-    exact: OnceCell<Box<Meeting<Dyadic>>>,
-    ray: &'r CastRay,
+    exact: OnceCell<Box<Numbers<Dyadic>>>,
     /// |d| and |n|.
     length: OnceCell<DoubleDouble>,
     normal_length: OnceCell<DoubleDouble>,
@@ -166,14 +165,15 @@ impl std::fmt::Debug for CastMeeting<'_> {
 }
 
 impl<'r> CastMeeting<'r> {
-    pub(super) fn new(ray: &'r CastRay, query: QueryRay<'r>, face: Triangle, side: Side) -> Self {
+    #[inline]
+    pub(super) fn new(ray: &'r CastRay, face: Triangle, side: Side) -> Self {
         Self {
-            query,
+            ray,
             face,
             side,
+            t: OnceCell::new(),
             fast: OnceCell::new(),
             exact: OnceCell::new(),
-            ray,
             length: OnceCell::new(),
             normal_length: OnceCell::new(),
         }
@@ -183,12 +183,19 @@ impl<'r> CastMeeting<'r> {
         self.fast.get_or_init(|| Meeting::quickly(self.ray, &self.face))
     }
 
-    fn exact(&self) -> &Meeting<Dyadic> {
-        self.exact.get_or_init(|| Box::new(Meeting::new(self.query.exact().clone(), &self.face)))
+    /// The ray in pairs of f64.
+    fn fast_ray(&self) -> RayNumbers<DoubleDouble> {
+        RayNumbers::of(self.ray)
+    }
+
+    fn exact(&self) -> &Numbers<Dyadic> {
+        self.exact.get_or_init(|| {
+            Box::new(Numbers { ray: RayNumbers::of(self.ray), meeting: Meeting::of(&self.face) })
+        })
     }
 
     fn length(&self) -> &DoubleDouble {
-        self.length.get_or_init(|| self.fast().direction_squared().sqrt())
+        self.length.get_or_init(|| self.fast().direction_squared(&self.fast_ray()).sqrt())
     }
 
     fn normal_length(&self) -> &DoubleDouble {
@@ -205,28 +212,44 @@ impl<'r> CastMeeting<'r> {
         self.side
     }
 
+    /// t in pairs of f64.
+    fn quick_t(&self) -> DoubleDouble {
+        *self.t.get_or_init(|| {
+            let quickly = crossing_parameter(self.ray.origin, self.ray.direction, self.face.corners);
+            quickly.unwrap_or_else(|| {
+                let (fast, ray) = (self.fast(), self.fast_ray());
+                fast.height(&ray, &self.face).over(fast.approach(&ray))
+            })
+        })
+    }
+
     /// The ray's parameter.
     pub fn t(&self) -> Rounded {
-        let t = self.fast().height().over(self.fast().approach());
-        t.rounded().unwrap_or_else(|| quotient(self.exact().height(), self.exact().approach()))
+        self.quick_t().rounded().unwrap_or_else(|| {
+            let Numbers { ray, meeting } = self.exact();
+            quotient(meeting.height(ray, &self.face), meeting.approach(ray))
+        })
     }
 
     /// Distance from the ray's origin: t times the length of its direction, in the mesh's unit.
     pub fn range(&self) -> Rounded {
-        let t = self.fast().height().over(self.fast().approach());
-        t.mul(self.length()).rounded().unwrap_or_else(|| {
-            let exact = self.exact();
+        self.quick_t().mul(self.length()).rounded().unwrap_or_else(|| {
+            let Numbers { ray, meeting } = self.exact();
             // t is not negative.
-            let squared = exact.height().square().mul(exact.direction_squared());
-            root(dashu_int::Sign::Positive, &squared, &exact.approach().square())
+            let squared = meeting.height(ray, &self.face).square().mul(meeting.direction_squared(ray));
+            root(dashu_int::Sign::Positive, &squared, &meeting.approach(ray).square())
         })
     }
 
     /// The point.
     pub fn point(&self) -> [Rounded; 3] {
+        let (fast, of_ray) = (self.fast(), self.fast_ray());
         [0, 1, 2].map(|k: usize| {
-            let rounded = self.fast().point(k).over(self.fast().approach()).rounded();
-            rounded.unwrap_or_else(|| quotient(&self.exact().point(k), self.exact().approach()))
+            let rounded = fast.point(k, &of_ray, &self.face).over(fast.approach(&of_ray)).rounded();
+            rounded.unwrap_or_else(|| {
+                let Numbers { ray, meeting } = self.exact();
+                quotient(&meeting.point(k, ray, &self.face), meeting.approach(ray))
+            })
         })
     }
 
@@ -234,19 +257,22 @@ impl<'r> CastMeeting<'r> {
     pub fn normal(&self) -> [Rounded; 3] {
         [0, 1, 2].map(|k: usize| {
             self.fast().normal.0[k].over(self.normal_length()).rounded().unwrap_or_else(|| {
-                let part = &self.exact().normal.0[k];
-                root(sign_of(part), &part.square(), self.exact().normal_squared())
+                let Numbers { meeting, .. } = self.exact();
+                let part = &meeting.normal.0[k];
+                root(sign_of(part), &part.square(), meeting.normal_squared())
             })
         })
     }
 
     /// The weights of the face's corners, in their order: the point is their weighted sum.
     pub fn barycentric(&self) -> [Rounded; 3] {
+        let (fast, of_ray) = (self.fast(), self.fast_ray());
         // The edge opposite of corner k starts at corner k + 1.
         [0, 1, 2].map(|k: usize| {
-            let rounded = self.face.edge(k + 1, &self.fast().ray).over(self.fast().approach()).rounded();
+            let rounded = self.face.edge(k + 1, &of_ray).over(fast.approach(&of_ray)).rounded();
             rounded.unwrap_or_else(|| {
-                quotient(&self.face.edge(k + 1, self.query.exact()), self.exact().approach())
+                let Numbers { ray, meeting } = self.exact();
+                quotient(&self.face.edge(k + 1, ray), meeting.approach(ray))
             })
         })
     }
@@ -254,10 +280,10 @@ impl<'r> CastMeeting<'r> {
     /// Cosine of the angle between the normal and the reversed ray: negative where the back is met.
     pub fn cos_incidence(&self) -> Rounded {
         let lengths = self.normal_length().mul(self.length());
-        minus(self.fast().approach()).over(&lengths).rounded().unwrap_or_else(|| {
-            let exact = self.exact();
-            let lengths = exact.normal_squared().mul(exact.direction_squared());
-            root(sign_of(&minus(exact.approach())), &exact.approach().square(), &lengths)
+        minus(self.fast().approach(&self.fast_ray())).over(&lengths).rounded().unwrap_or_else(|| {
+            let Numbers { ray, meeting } = self.exact();
+            let lengths = meeting.normal_squared().mul(meeting.direction_squared(ray));
+            root(sign_of(&minus(meeting.approach(ray))), &meeting.approach(ray).square(), &lengths)
         })
     }
 

@@ -8,10 +8,12 @@
 //! A product below 1e-250 is bounded by its size alone. Above 1e250, and for quotients below 1e-250, nothing is
 //! claimed: the error is infinite, and exact arithmetic takes over.
 
+mod crossing_parameter;
 mod plane_crossing;
 
 use std::cmp::Ordering;
 
+pub(crate) use crossing_parameter::crossing_parameter;
 pub(crate) use plane_crossing::PlaneCrossing;
 
 use crate::numbers::number::Number;
@@ -38,7 +40,7 @@ const MIN_MAGNITUDE: f64 = 1e-250;
 const MAX_MAGNITUDE: f64 = 1e250;
 
 /// a + b = sum + rest, exactly. (D. Knuth)
-#[inline]
+#[inline(always)]
 fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let of_b = sum - a;
@@ -47,22 +49,26 @@ fn two_sum(a: f64, b: f64) -> (f64, f64) {
 }
 
 /// a + b = sum + rest, exactly, if |a| >= |b| or a = 0. (T. Dekker)
-#[inline]
+#[inline(always)]
 fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     (sum, b - (sum - a))
 }
 
-/// a b = product + rest, exactly, for sizes from [`MIN_MAGNITUDE`] to [`MAX_MAGNITUDE`]. (T. Dekker, G. Veltkamp)
-#[inline]
-fn two_product(a: f64, b: f64) -> (f64, f64) {
-    #[inline]
+/// a b = product + rest, exactly, for sizes from [`MIN_MAGNITUDE`] to [`MAX_MAGNITUDE`]: by one fused operation where the processor has
+/// it, else by T. Dekker and G. Veltkamp. Both give the same numbers.
+#[inline(always)]
+fn two_product<const FUSED: bool>(a: f64, b: f64) -> (f64, f64) {
+    #[inline(always)]
     fn split(a: f64) -> (f64, f64) {
         let scaled = 134_217_729.0 * a; // 2^27 + 1
         let high = scaled - (scaled - a);
         (high, a - high)
     }
     let product = a * b;
+    if FUSED {
+        return (product, a.mul_add(b, -product));
+    }
     let ((a1, a2), (b1, b2)) = (split(a), split(b));
     (product, ((a1 * b1 - product) + a1 * b2 + a2 * b1) + a2 * b2)
 }
@@ -225,7 +231,7 @@ impl Number for DoubleDouble {
             let most = self.upper_bound() * other.upper_bound() * ROUNDED_UP + f64::MIN_POSITIVE;
             return Self::of(0.0).with_error(most);
         }
-        let (product, rest) = two_product(self.high, other.high);
+        let (product, rest) = two_product::<false>(self.high, other.high);
         let cross = self.high * other.low + self.low * other.high;
         let (high, low) = fast_two_sum(product, rest + cross);
         let rounding = if self.low == 0.0 && other.low == 0.0 { 0.0 } else { PRODUCT_ERROR * high.abs() };

@@ -24,6 +24,14 @@ pub(super) fn holds(claimed: &DoubleDouble, exact: &Dyadic) -> bool {
     off.square().sub(&Dyadic::of(claimed.error).square()).sign() != Some(Ordering::Greater)
 }
 
+/// Whether the claim holds for p / q.
+pub(super) fn holds_quotient(claimed: &DoubleDouble, p: &Dyadic, q: &Dyadic) -> bool {
+    let times = |x: f64| q.mul(&Dyadic::of(x));
+    let off = p.sub(&times(claimed.high)).sub(&times(claimed.low));
+    claimed.error.is_infinite()
+        || off.square().sub(&times(claimed.error).square()).sign() != Some(Ordering::Greater)
+}
+
 /// A polynomial with cancellation and every operation but division.
 fn poly<T: Number>([a, b, c, d]: [f64; 4]) -> T {
     let [a, b, c, d] = [a, b, c, d].map(T::of);

@@ -23,7 +23,7 @@
 use glam::DVec3;
 use raypencil_scene::{CastRay, FaceId, Side, Sides};
 
-use super::super::quads::Next;
+use super::super::wide_tree::Next;
 use super::ExactCast;
 use super::flat::corner_of;
 use super::frame::Frame;

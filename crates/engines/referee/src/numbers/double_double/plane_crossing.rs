@@ -16,16 +16,17 @@
 use glam::DVec3;
 
 use super::{DoubleDouble, fast_two_sum, two_product, two_sum};
+use crate::lanes::{Work, run};
 
 /// 256 u^2.
-const ERROR: f64 = 1.0 / (1_u128 << 98) as f64;
+pub(super) const ERROR: f64 = 1.0 / (1_u128 << 98) as f64;
 
-const UNDERFLOW: f64 = 1e-190;
-const LEAST: f64 = 1e-20;
-const MOST: f64 = 1e20;
+pub(super) const UNDERFLOW: f64 = 1e-190;
+pub(super) const LEAST: f64 = 1e-20;
+pub(super) const MOST: f64 = 1e20;
 
 /// hi + lo.
-type Pair = (f64, f64);
+pub(super) type Pair = (f64, f64);
 
 /// n, h and g.
 #[derive(Debug, Clone, Copy)]
@@ -39,18 +40,32 @@ impl PlaneCrossing {
     /// That of the ray from `origin` along `direction` and a face with these corners; `None` if a size is out of bounds, and where a
     /// number may be exactly 0, of which no error but 0 would do.
     pub(crate) fn of(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> Option<Self> {
+        run(Crossing { origin, direction, corners: [a, b, c] })
+    }
+}
+
+struct Crossing {
+    origin: DVec3,
+    direction: DVec3,
+    corners: [DVec3; 3],
+}
+
+impl Work for Crossing {
+    type Output = Option<PlaneCrossing>;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> Option<PlaneCrossing> {
+        let Self { origin, direction, corners: [a, b, c] } = self;
         let minus = |p: DVec3, q: DVec3| [0, 1, 2].map(|k: usize| two_sum(p[k], -q[k]));
         let [ab, ac, offset] = [minus(b, a), minus(c, a), minus(a, origin)];
-        let size = |of: &[Pair; 3]| of[0].0.abs().max(of[1].0.abs()).max(of[2].0.abs());
         let (long, far, fast) = (size(&ab).max(size(&ac)), size(&offset), direction.abs().max_element());
         let fits = |size: f64| (LEAST..MOST).contains(&size);
         if !(fits(long) && fits(far) && fits(fast)) {
             return None;
         }
-        let minor = |k: usize, l: usize| difference(product(ab[k], ac[l]), product(ab[l], ac[k]));
-        let normal = [minor(1, 2), minor(2, 0), minor(0, 1)];
+        let normal = normal_of::<FUSED>(&ab, &ac);
         let dot = |with: [Pair; 3]| {
-            let [x, y, z] = [0, 1, 2].map(|k: usize| product(normal[k], with[k]));
+            let [x, y, z] = [0, 1, 2].map(|k: usize| pair_product::<FUSED>(normal[k], with[k]));
             sum(sum(x, y), z)
         };
         let (height, approach) = (dot(offset), dot(direction.to_array().map(|part| (part, 0.0))));
@@ -59,7 +74,7 @@ impl PlaneCrossing {
         }
         let of = |(high, low): Pair, size: f64| DoubleDouble::constant(high, low, ERROR * size + UNDERFLOW);
         let area = long * long;
-        Some(Self {
+        Some(PlaneCrossing {
             normal: normal.map(|part| of(part, area)),
             height: of(height, area * far),
             approach: of(approach, area * fast),
@@ -67,9 +82,25 @@ impl PlaneCrossing {
     }
 }
 
+/// The largest part.
+#[inline(always)]
+pub(super) fn size(of: &[Pair; 3]) -> f64 {
+    of[0].0.abs().max(of[1].0.abs()).max(of[2].0.abs())
+}
+
+/// n of two edges.
+#[inline(always)]
+pub(super) fn normal_of<const FUSED: bool>(ab: &[Pair; 3], ac: &[Pair; 3]) -> [Pair; 3] {
+    let minor = |k: usize, l: usize| {
+        let (high, low) = pair_product::<FUSED>(ab[l], ac[k]);
+        sum(pair_product::<FUSED>(ab[k], ac[l]), (-high, -low))
+    };
+    [minor(1, 2), minor(2, 0), minor(0, 1)]
+}
+
 /// AccurateDWPlusDW.
 #[inline(always)]
-fn sum(a: Pair, b: Pair) -> Pair {
+pub(super) fn sum(a: Pair, b: Pair) -> Pair {
     let (high, rest) = two_sum(a.0, b.0);
     let (low, last) = two_sum(a.1, b.1);
     let (high, rest) = fast_two_sum(high, rest + low);
@@ -77,13 +108,8 @@ fn sum(a: Pair, b: Pair) -> Pair {
 }
 
 #[inline(always)]
-fn difference(a: Pair, b: Pair) -> Pair {
-    sum(a, (-b.0, -b.1))
-}
-
-#[inline(always)]
-fn product(a: Pair, b: Pair) -> Pair {
-    let (high, rest) = two_product(a.0, b.0);
+pub(super) fn pair_product<const FUSED: bool>(a: Pair, b: Pair) -> Pair {
+    let (high, rest) = two_product::<FUSED>(a.0, b.0);
     fast_two_sum(high, rest + (a.0 * b.1 + a.1 * b.0))
 }
 

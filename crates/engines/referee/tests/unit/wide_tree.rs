@@ -1,6 +1,6 @@
 //! No face that a ray meets is left out, on rays and faces that are hard for f32; and most others are.
 
-use raypencil_scene::{Sides, Triangles};
+use raypencil_scene::{CastRay, Sides, Triangles};
 
 use super::super::query_ray::QueryRay;
 use super::super::{ExactCast, Tree};
@@ -116,10 +116,10 @@ fn every_face_that_is_met_is_shown_and_few_others() {
                 if ray.validate("ray").is_err() {
                     continue;
                 }
-                let Some(in_frame) = tree.quads.ray(&ray) else { continue };
+                let Some(in_frame) = tree.wide.ray(&ray) else { continue };
                 asked += 1;
                 let mut ids = Vec::new();
-                tree.quads.walk(&in_frame, |face| {
+                tree.wide.walk(mesh.vertices(), &in_frame, |face| {
                     ids.push(face.id);
                     Next::On
                 });
@@ -144,21 +144,23 @@ fn every_face_that_is_met_is_shown_and_few_others() {
 fn every_face_is_in_a_leaf_whatever_their_number() {
     let mut random = SplitMix64(5);
     let all = moved_and_scaled(&scattered(&mut random, 0.1), DVec3::ZERO, 1.0).0;
-    for count in (0..=70).chain([128, 129, 255, 256, 257, 300]) {
+    for count in (0..=70).chain([128, 129, 255, 256, 257, 260, 300]) {
         let faces: Vec<Triangle> = (0..count).map(|id| Triangle::of(&all, FaceId(id))).collect();
-        let quads = Quads::of(&faces);
+        let tree = WideTree::of(&all, &faces);
         let mut found = Vec::new();
-        let mut waiting: Vec<u32> = (!quads.nodes.is_empty()).then_some(0).into_iter().collect();
+        let mut waiting: Vec<u32> = (!tree.nodes.is_empty()).then_some(0).into_iter().collect();
         let mut nodes = 0;
         while let Some(at) = waiting.pop() {
-            let node = &quads.nodes[at as usize];
+            let node = &tree.nodes[at as usize];
             nodes += 1;
-            for lane in (0..WIDTH).filter(|&lane| node.planes[0][lane] <= node.planes[3][lane]) {
+            for lane in (0..WIDTH)
+                .filter(|&lane| node.planes[0][lane / 4][lane % 4] <= node.planes[3][lane / 4][lane % 4])
+            {
                 match node.children[lane] {
                     leaf if leaf & LEAF != 0 => {
-                        let leaf = &quads.leaves[(leaf & !LEAF) as usize];
-                        let present = (0..WIDTH).filter(|lane| leaf.present >> lane & 1 == 1);
-                        found.extend(present.map(|lane| leaf.faces[lane].id.0));
+                        let leaf = &tree.leaves[(leaf & !LEAF) as usize];
+                        let present = (0..LEAF_WIDTH).filter(|lane| leaf.present >> lane & 1 == 1);
+                        found.extend(present.map(|lane| leaf.ids[lane].0));
                     }
                     node => waiting.push(node),
                 }
@@ -166,7 +168,7 @@ fn every_face_is_in_a_leaf_whatever_their_number() {
         }
         found.sort_unstable();
         assert_eq!(found, (0..count).collect::<Vec<_>>());
-        assert_eq!((nodes, quads.leaves.len()), (quads.nodes.len(), (count as usize).div_ceil(WIDTH)));
+        assert_eq!((nodes, tree.leaves.len()), (tree.nodes.len(), (count as usize).div_ceil(LEAF_WIDTH)));
     }
 }
 
@@ -180,10 +182,10 @@ fn a_walk_ends_where_its_visitor_says() {
     let both = Triangles::new(vertices, faces.collect()).expect("triangles");
     let tree = Tree::of(&both);
     let ray = CastRay::new(DVec3::new(0.3, 0.7, 3.0), DVec3::new(0.01, 0.01, -1.0));
-    let in_frame = tree.quads.ray(&ray).expect("a ray that is near");
+    let in_frame = tree.wide.ray(&ray).expect("a ray that is near");
     let seen = |next: fn() -> Next| {
         let mut seen = Vec::new();
-        tree.quads.walk(&in_frame, |face| {
+        tree.wide.walk(both.vertices(), &in_frame, |face| {
             seen.push(face.id.0);
             next()
         });
@@ -208,7 +210,7 @@ fn rays_from_far_away_have_the_same_answers() {
         let far = [1e2, 1e4, 1e6, 1e12][k % 4];
         let face = faces[random.below(512) as usize];
         let ray = aimed(&mut random, face, far);
-        match cast.tree.quads.ray(&ray) {
+        match cast.tree.wide.ray(&ray) {
             Some(_) => near += 1,
             None => distant += 1,
         }
@@ -242,14 +244,45 @@ fn rays_from_far_away_have_the_same_answers() {
         let expected =
             all[..count].iter().map(|(_, ties)| ties.first().map(|face| (*face, ties.len() as u32)));
         let expected: Vec<Option<(FaceId, u32)>> = expected.collect();
-        let mut found = Vec::new();
+        let mut found = vec![Vec::new(); count];
         cast.first_meetings(&rays, Sides::Both, |index, read, _| {
-            assert_eq!(index, found.len());
-            found.push(read.hit().map(|(meeting, ties)| (meeting.face(), *ties)));
+            found[index].push(read.hit().map(|(meeting, ties)| (meeting.face(), *ties)));
         });
-        assert_eq!(found, expected);
+        let once: Vec<_> = expected.iter().map(|expected| vec![*expected]).collect();
+        assert_eq!(found, once);
         let is_met: Vec<bool> = expected.iter().map(Option::is_some).collect();
         assert_eq!(cast.any_of(&rays, Sides::Both), is_met);
     }
     assert!(near > 100 && distant > 100 && hits > 100, "{near} near, {distant} far away, {hits} hits");
+}
+
+#[test]
+fn rays_that_follow_each_other_walk_one_by_one_and_have_the_same_answers() {
+    let (mesh, _) = moved_and_scaled(&lattice(), DVec3::ZERO, 1.0);
+    let cast = ExactCast::new(&mesh);
+    // Row by row from one place, through corners, along edges and past the border.
+    let of_camera = |k: u32| {
+        let (row, column) = (f64::from(k / 40), f64::from(k % 40));
+        CastRay::new(DVec3::new(0.25, 0.5, 2.0), DVec3::new(column / 16.0 - 1.3125, row / 16.0 - 1.5, -2.0))
+    };
+    let rays: Vec<CastRay> = (0..1600).map(of_camera).collect();
+    // The same rays, neighbours far apart.
+    let order: Vec<usize> = (0..rays.len()).map(|k| k * 607 % rays.len()).collect();
+    let scattered: Vec<CastRay> = order.iter().map(|&k| rays[k]).collect();
+    assert_eq!((how_many_together(&rays), how_many_together(&scattered)), (1, TOGETHER));
+    let of = |rays: &[CastRay]| {
+        let mut all = vec![None; rays.len()];
+        cast.first_meetings(rays, Sides::Both, |index, read, decided_by| {
+            let hit = read.hit().map(|(meeting, ties)| (meeting.face(), *ties, meeting.t()));
+            all[index] = Some((hit, decided_by));
+        });
+        all
+    };
+    let (all, of_scattered) = (of(&rays), of(&scattered));
+    let (any, any_of_scattered) = (cast.any_of(&rays, Sides::Both), cast.any_of(&scattered, Sides::Both));
+    for (k, &from) in order.iter().enumerate() {
+        assert_eq!((of_scattered[k], any_of_scattered[k]), (all[from], any[from]), "{:?}", rays[from]);
+    }
+    let hits = any.iter().filter(|&&any| any).count();
+    assert!(hits > 800 && hits < 1500 && all.iter().all(Option::is_some), "{hits} hits");
 }
