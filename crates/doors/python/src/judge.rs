@@ -55,24 +55,7 @@ fn compared(
     precision: Precision,
     progress: &dyn Progress,
 ) -> Comparison {
-    let piece = |from: usize, to: usize| {
-        fn some<T: Copy>(all: &Option<Vec<T>>, from: usize, to: usize) -> Option<Vec<T>> {
-            all.as_ref().map(|all| all[from..to].to_vec())
-        }
-        Stated {
-            face: some(&stated.face, from, to),
-            t: some(&stated.t, from, to),
-            range: some(&stated.range, from, to),
-            hit: some(&stated.hit, from, to),
-            side: some(&stated.side, from, to),
-            point: some(&stated.point, from, to),
-            normal: some(&stated.normal, from, to),
-            barycentric: some(&stated.barycentric, from, to),
-            cos_incidence: some(&stated.cos_incidence, from, to),
-            point_error: some(&stated.point_error, from, to),
-            range_error: some(&stated.range_error, from, to),
-        }
-    };
+    let piece = |from: usize, to: usize| stated.some_of(&(from..to).collect::<Vec<_>>());
     let mut whole: Option<Comparison> = None;
     let mut from = 0;
     loop {

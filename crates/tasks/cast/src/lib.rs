@@ -63,8 +63,8 @@ pub use bag::{BagFields, BagForm, write_scan_bag};
 pub use cloud::{CloudFrame, CloudMap, write_pcd, write_ply};
 pub use columns::{Caster, ColumnsPart, FirstColumns, ReadingCounts, Values};
 pub use comparison::{
-    CastCounts, CastValue, Comparison, RayVerdict, Stated, ValueTally, Wrong, compare, compare_with,
-    comparison_headline, comparison_json, comparison_text, write_comparison,
+    CastCounts, CastValue, Comparison, RayVerdict, Stated, StoredErrors, ValueTally, Wrong, compare,
+    compare_with, comparison_headline, comparison_json, comparison_text, write_comparison,
 };
 pub use layout::PageScan;
 pub use pack::{

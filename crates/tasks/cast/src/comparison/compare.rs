@@ -15,9 +15,9 @@
 //! | normal | 16 kappa u (1 + S / e) | two edges, each within 2 u S if vertices are rounded; e: the shortest edge |
 //! | cosine | that of the normal + 8 u | |
 //!
-//! Where a point or a range was stored with fewer digits than it was computed with, the error of storing is added
-//! (`Stated::point_error`, `range_error`): that of a point is the length of the vector of half units, which no turn of axes changes, so it
-//! holds for t along the ray and for each part of the point in any frame.
+//! Where a value was stored with fewer digits than it was computed with, the error of storing is added (`Stated::stored`). Of an array it
+//! is half a unit in the last place of its type, of a vector that of its largest part. Of a point of a cloud it is the length of the vector
+//! of half units, which no turn of axes changes, so it holds for t along the ray and for each part of the point in any frame.
 //!
 //! A value that is not a number is wrong.
 
@@ -295,23 +295,16 @@ impl Judge<'_> {
         let per_t = ray.direction.length();
         let t = normal.dot(a - ray.origin) / normal.dot(ray.direction);
         let range = if is_t { distance * per_t } else { distance };
-        let of_storing = self.of_storing(if is_t { CastValue::T } else { CastValue::Range }, index);
+        let stored = &self.stated.stored;
+        let of_storing = match is_t {
+            true => stored.of(CastValue::T, index) * per_t,
+            false => stored.of(CastValue::Range, index),
+        };
         (t * per_t - range).abs() <= self.exact.range_error(ray, face, self.precision) + of_storing
-    }
-
-    /// How far storing may have moved a length, in the mesh's unit.
-    fn of_storing(&self, value: CastValue, index: usize) -> f64 {
-        let error = |array: &Option<Vec<f64>>| array.as_ref().map_or(0.0, |array| array[index]);
-        match value {
-            CastValue::T | CastValue::Point => error(&self.stated.point_error),
-            CastValue::Range => error(&self.stated.range_error),
-            _ => 0.0,
-        }
     }
 
     /// How far a value may be off by rounding.
     fn bound(&self, value: CastValue, index: usize, ray: &CastRay, hit: &CastHit) -> f64 {
-        let of_storing = self.of_storing(value, index);
         let range = self.exact.range_error(ray, hit.face, self.precision);
         let lateral = self.exact.lateral_error(ray, self.precision);
         let length = ray.direction.length();
@@ -321,17 +314,18 @@ impl Judge<'_> {
         let doubled_area = (b - a).cross(c - a).length();
         let longest = edges[0].max(edges[1]).max(edges[2]);
         let normal = normal_error(self.exact, self.mesh, ray, hit.face, self.precision);
-        match value {
-            CastValue::T => (range + of_storing) / length,
-            CastValue::Range => range + of_storing,
+        let of_arithmetic = match value {
+            CastValue::T => range / length,
+            CastValue::Range => range,
             CastValue::Side => 0.0,
-            CastValue::Point => range + lateral + of_storing,
+            CastValue::Point => range + lateral,
             CastValue::Barycentric => {
                 lateral / (hit.cos_incidence.double.abs() * (doubled_area / longest)) + 16.0 * u
             }
             CastValue::Normal => normal,
             CastValue::CosIncidence => normal + 8.0 * u,
-        }
+        };
+        of_arithmetic + self.stated.stored.of(value, index)
     }
 
     /// The first value that is wrong, and all errors as parts of their bounds.

@@ -17,7 +17,7 @@ mod verdict;
 pub(crate) use compare::normal_error;
 pub use compare::{compare, compare_with};
 pub use files::write_comparison;
-pub use stated::Stated;
+pub use stated::{Stated, StoredErrors};
 pub(crate) use text::wrong_text;
 pub use text::{comparison_headline, comparison_json, comparison_text};
 pub use verdict::{CastCounts, CastValue, Comparison, RayVerdict, ValueTally, Wrong};

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use raypencil_scene::{CastRay, FaceId, Side, Sides, Triangles};
 
+use super::verdict::CastValue;
 use crate::answers::{Answers, FirstHit};
 
 /// First hits as another program states them: for each quantity that it gives, one value for each ray, in their order.
@@ -30,10 +31,42 @@ pub struct Stated {
     pub barycentric: Option<Vec<DVec3>>,
     /// Cosine of the angle between the normal and the reversed ray.
     pub cos_incidence: Option<Vec<f64>>,
-    /// How far storing may have moved the point, in the mesh's unit: it widens the bounds of `t` and `point`. `None`: not at all.
-    pub point_error: Option<Vec<f64>>,
-    /// The same for `range`.
-    pub range_error: Option<Vec<f64>>,
+    /// How far storing may have moved these values.
+    pub stored: StoredErrors,
+}
+
+/// How far storing may have moved each part of a value, for each ray and in the value's own unit: it widens the value's bound. `None`:
+/// not at all.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct StoredErrors {
+    /// Of `t`.
+    pub t: Option<Vec<f64>>,
+    /// Of `range`.
+    pub range: Option<Vec<f64>>,
+    /// Of the parts of `point`.
+    pub point: Option<Vec<f64>>,
+    /// Of the parts of `normal`.
+    pub normal: Option<Vec<f64>>,
+    /// Of the parts of `barycentric`.
+    pub barycentric: Option<Vec<f64>>,
+    /// Of `cos_incidence`.
+    pub cos_incidence: Option<Vec<f64>>,
+}
+
+impl StoredErrors {
+    /// The error of a value of a ray; 0 if it is stored as it was computed.
+    pub(crate) fn of(&self, value: CastValue, index: usize) -> f64 {
+        let errors = match value {
+            CastValue::T => &self.t,
+            CastValue::Range => &self.range,
+            CastValue::Point => &self.point,
+            CastValue::Normal => &self.normal,
+            CastValue::Barycentric => &self.barycentric,
+            CastValue::CosIncidence => &self.cos_incidence,
+            CastValue::Side => &None,
+        };
+        errors.as_ref().map_or(0.0, |errors| errors[index])
+    }
 }
 
 impl Stated {
@@ -55,13 +88,12 @@ impl Stated {
             normal: vector(|hit| hit.normal),
             barycentric: vector(|hit| DVec3::from_array(hit.barycentric)),
             cos_incidence: Some(answers.values(|hit| hit.cos_incidence, f64::NAN)),
-            point_error: None,
-            range_error: None,
+            stored: StoredErrors::default(),
         }
     }
 
     /// The answers to the rays with these indices.
-    pub(crate) fn some_of(&self, indices: &[usize]) -> Self {
+    pub fn some_of(&self, indices: &[usize]) -> Self {
         fn some<T: Copy>(array: &Option<Vec<T>>, indices: &[usize]) -> Option<Vec<T>> {
             let array = array.as_ref()?;
             Some(indices.iter().map(|&index| array[index]).collect())
@@ -76,8 +108,14 @@ impl Stated {
             normal: some(&self.normal, indices),
             barycentric: some(&self.barycentric, indices),
             cos_incidence: some(&self.cos_incidence, indices),
-            point_error: some(&self.point_error, indices),
-            range_error: some(&self.range_error, indices),
+            stored: StoredErrors {
+                t: some(&self.stored.t, indices),
+                range: some(&self.stored.range, indices),
+                point: some(&self.stored.point, indices),
+                normal: some(&self.stored.normal, indices),
+                barycentric: some(&self.stored.barycentric, indices),
+                cos_incidence: some(&self.stored.cos_incidence, indices),
+            },
         }
     }
 }

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use glam::DVec3;
-use raypencil_files::{Fault, FileError, Limits, read_npy_numbers};
+use raypencil_files::{Fault, FileError, Limits, Numbers, Storage, read_npy_numbers};
 use raypencil_rosbag::CloudChoice;
 use raypencil_scene::{FaceId, Side};
 
 use crate::cloud::CloudFrame;
-use crate::comparison::Stated;
+use crate::comparison::{Stated, StoredErrors};
 use crate::pack::clouds::bag_within;
 
 /// What a candidate declares of its point cloud.
@@ -44,9 +44,9 @@ pub fn read_candidate(
 ) -> Result<Stated, FileError> {
     let reader = Reader { folder, shape, count: shape.iter().product() };
     let is_miss = |number: f64| !number.is_finite() || Some(number) == conventions.miss;
-    let distance = |name: &str| -> Result<Option<Vec<f64>>, FileError> {
-        let numbers = reader.numbers(name, &[])?;
-        Ok(numbers.map(|numbers| {
+    let distance = |name: &str| -> Result<Stored<f64>, FileError> {
+        let (numbers, errors) = reader.numbers(name, &[])?;
+        let distances = numbers.map(|numbers| {
             let said = |number: f64| match number {
                 number if Some(number) == conventions.miss => f64::INFINITY,
                 f64::NEG_INFINITY => number,
@@ -54,15 +54,16 @@ pub fn read_candidate(
                 number => number,
             };
             numbers.into_iter().map(said).collect()
-        }))
+        });
+        Ok((distances, errors))
     };
-    let vectors = |name: &str| -> Result<Option<Vec<DVec3>>, FileError> {
-        let numbers = reader.numbers(name, &[3])?;
-        Ok(numbers.map(|numbers| numbers.chunks_exact(3).map(DVec3::from_slice).collect()))
+    let vectors = |name: &str| -> Result<Stored<DVec3>, FileError> {
+        let (numbers, errors) = reader.numbers(name, &[3])?;
+        Ok((numbers.map(|numbers| numbers.chunks_exact(3).map(DVec3::from_slice).collect()), errors))
     };
     let face = match conventions.ignores_faces {
         true => None,
-        false => reader.numbers("face", &[])?.map(|numbers| {
+        false => reader.numbers("face", &[])?.0.map(|numbers| {
             let face = |(cell, number): (usize, f64)| match number {
                 number if is_miss(number) || number == -1.0 || number == f64::from(u32::MAX) => Ok(None),
                 number if number.fract() == 0.0 && (0.0..f64::from(u32::MAX)).contains(&number) => {
@@ -77,7 +78,7 @@ pub fn read_candidate(
         }),
     }
     .transpose()?;
-    let side = reader.numbers("side", &[])?.map(|numbers| {
+    let side = reader.numbers("side", &[])?.0.map(|numbers| {
         let side = |number: f64| match number {
             number if number > 0.0 => Some(Side::Front),
             number if number < 0.0 => Some(Side::Back),
@@ -85,19 +86,30 @@ pub fn read_candidate(
         };
         numbers.into_iter().map(side).collect()
     });
+    let ((t, of_t), (range, of_range)) = (distance("t")?, distance("range")?);
+    let ((point, of_point), (normal, of_normal)) = (vectors("point")?, vectors("normal")?);
+    let (barycentric, of_barycentric) = vectors("barycentric")?;
+    let (cos_incidence, of_cos_incidence) = reader.numbers("cos_incidence", &[])?;
+    let stored = StoredErrors {
+        t: of_t,
+        range: of_range,
+        point: of_point,
+        normal: of_normal,
+        barycentric: of_barycentric,
+        cos_incidence: of_cos_incidence,
+    };
     let stated = Stated {
         face,
-        t: distance("t")?,
-        range: distance("range")?,
+        t,
+        range,
         // Truth values alone are judged from Python.
         hit: None,
         side,
-        point: vectors("point")?,
-        normal: vectors("normal")?,
-        barycentric: vectors("barycentric")?,
-        cos_incidence: reader.numbers("cos_incidence", &[])?,
-        point_error: None,
-        range_error: None,
+        point,
+        normal,
+        barycentric,
+        cos_incidence,
+        stored,
     };
     if stated.face.is_none() && stated.t.is_none() && stated.range.is_none() {
         let expected = "face.npy, t.npy or range.npy; without one of them it is not said which rays hit";
@@ -109,6 +121,22 @@ pub fn read_candidate(
         return Err(FileError::Array(fault.in_file(folder)));
     }
     Ok(stated)
+}
+
+/// Values, and how far storing may have moved each of them.
+type Stored<T> = (Option<Vec<T>>, Option<Vec<f64>>);
+
+/// How far storing may have moved the parts of each value: half a unit in the last place of the largest. `None`: numbers of double
+/// precision and whole numbers are what was computed.
+fn errors_of_storing(array: &Numbers, parts: usize) -> Option<Vec<f64>> {
+    let half_unit = |value: &f64| if value.is_finite() { 0.5 * array.storage.ulp(*value) } else { 0.0 };
+    match array.storage {
+        Storage::F64 | Storage::Whole => None,
+        _ => {
+            let largest = |parts: &[f64]| parts.iter().map(half_unit).fold(0.0, f64::max);
+            Some(array.values.chunks_exact(parts).map(largest).collect())
+        }
+    }
 }
 
 struct Reader<'a> {
@@ -129,11 +157,12 @@ impl Reader<'_> {
         FileError::Array(Fault::new(place, found, expected).in_file(&path))
     }
 
-    /// The numbers of an array, if the folder has it, whose shape is that of the rays and then `last`.
-    fn numbers(&self, name: &str, last: &[u64]) -> Result<Option<Vec<f64>>, FileError> {
+    /// The numbers of an array, if the folder has it, whose shape is that of the rays and then `last`; beside them how far storing may
+    /// have moved those of each ray.
+    fn numbers(&self, name: &str, last: &[u64]) -> Result<Stored<f64>, FileError> {
         let path = self.folder.join(format!("{name}.npy"));
         if !path.exists() {
-            return Ok(None);
+            return Ok((None, None));
         }
         let array = read_npy_numbers(&path, &Limits::default())?;
         let of_rays: Vec<u64> = self.shape.iter().chain(last).copied().collect();
@@ -142,6 +171,7 @@ impl Reader<'_> {
             let expected = format!("{of_rays:?}, or flat {flat:?}");
             return Err(self.fault(name, "shape", format!("{:?}", array.shape), expected));
         }
-        Ok(Some(array.values))
+        let errors = errors_of_storing(&array, last.iter().product::<u64>() as usize);
+        Ok((Some(array.values), errors))
     }
 }

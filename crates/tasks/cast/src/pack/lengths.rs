@@ -67,6 +67,12 @@ fn undo(trial: &mut Trial, by: f64, undone: Undone, with_points: bool) {
         .flatten()
         .filter(|range| range.is_finite())
         .for_each(|range| *range = undone(*range, by));
+    // What storing did changes as the difference of two lengths does.
+    let slope = undone(1.0, by) - undone(0.0, by);
+    let stored = &mut stated.stored;
+    let of_points = stored.point.as_mut().filter(|_| with_points);
+    let errors = [stored.t.as_mut(), stored.range.as_mut(), of_points];
+    errors.into_iter().flatten().flatten().for_each(|error| *error *= slope);
     if with_points {
         for (point, ray) in stated.point.iter_mut().flatten().zip(rays).filter(|(point, _)| point.is_finite())
         {

@@ -90,7 +90,9 @@ impl CloudPart {
         };
         stated.t = Some(rays.iter().zip(&points).map(t).collect());
         stated.point = Some(points.iter().map(|(point, _)| *point).collect());
-        stated.point_error = Some(points.iter().map(|(_, error)| *error).collect());
+        let lengths = rays.iter().map(|ray| ray.direction.length());
+        stated.stored.t = Some(lengths.zip(&points).map(|(length, (_, error))| error / length).collect());
+        stated.stored.point = Some(points.iter().map(|(_, error)| *error).collect());
     }
 }
 
@@ -145,6 +147,10 @@ fn scale(trial: &mut Trial, by: f64) {
     each(&mut trial.stated.t, |_, t| *t *= by);
     each(&mut trial.stated.range, |_, range| *range *= by);
     each(&mut trial.stated.point, |_, point| *point *= by);
+    let stored = &mut trial.stated.stored;
+    for errors in [&mut stored.t, &mut stored.range, &mut stored.point] {
+        each(errors, |_, error| *error *= by);
+    }
 }
 
 fn axes(trial: &mut Trial, change: fn(DVec3) -> DVec3) {
@@ -194,6 +200,7 @@ const OF_ARRAYS: &[Mistake] = &[
         undo: |trial| {
             let lengths: Vec<f64> = trial.rays.iter().map(|ray| ray.direction.length()).collect();
             each(&mut trial.stated.t, |index, t| *t /= lengths[index]);
+            each(&mut trial.stated.stored.t, |index, error| *error /= lengths[index]);
         },
     },
     Mistake {
@@ -201,6 +208,7 @@ const OF_ARRAYS: &[Mistake] = &[
         undo: |trial| {
             let lengths: Vec<f64> = trial.rays.iter().map(|ray| ray.direction.length()).collect();
             each(&mut trial.stated.range, |index, range| *range *= lengths[index]);
+            each(&mut trial.stated.stored.range, |index, error| *error *= lengths[index]);
         },
     },
     Mistake {
@@ -235,7 +243,14 @@ const OF_ARRAYS: &[Mistake] = &[
     },
     Mistake {
         words: "normals are not 1 long",
-        undo: |trial| each(&mut trial.stated.normal, |_, normal| *normal = normal.normalize_or_zero()),
+        undo: |trial| {
+            // Storing moves each of three parts, and so the length that they are divided by.
+            if let (Some(normals), Some(errors)) = (&trial.stated.normal, &mut trial.stated.stored.normal) {
+                let pairs = normals.iter().zip(errors).filter(|(normal, _)| **normal != DVec3::ZERO);
+                pairs.for_each(|(normal, error)| *error *= 3.0 / normal.length());
+            }
+            each(&mut trial.stated.normal, |_, normal| *normal = normal.normalize_or_zero());
+        },
     },
     Mistake {
         words: "cosines of incidence have the other sign: a front has a positive one",
@@ -258,7 +273,10 @@ const OF_ARRAYS: &[Mistake] = &[
     },
     Mistake {
         words: "angles in degrees stand in place of their cosines",
-        undo: |trial| each(&mut trial.stated.cos_incidence, |_, cos| *cos = libm::cos(cos.to_radians())),
+        undo: |trial| {
+            each(&mut trial.stated.cos_incidence, |_, cos| *cos = libm::cos(cos.to_radians()));
+            each(&mut trial.stated.stored.cos_incidence, |_, error| *error = error.to_radians());
+        },
     },
     Mistake {
         words: "fronts and backs are taken for each other",

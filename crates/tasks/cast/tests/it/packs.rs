@@ -84,6 +84,38 @@ impl Folders {
         self
     }
 
+    /// Stores arrays of the candidate in single or half precision, each number moved by so many units in its last place.
+    fn store(self, is_half: bool, units: i16, names: &[&str]) -> Self {
+        for name in names {
+            let path = self.candidate.path().join(format!("{name}.npy"));
+            let array = read_npy_numbers(&path, &Default::default()).unwrap();
+            let single = |value: f64| {
+                let bits = (value as f32).to_bits();
+                if value.is_finite() && value != 0.0 { bits.wrapping_add_signed(units.into()) } else { bits }
+            };
+            let half = |value: f64| {
+                let bits = half_bits(value);
+                if value.is_finite() && value != 0.0 { bits.wrapping_add_signed(units) } else { bits }
+            };
+            let bytes: Vec<u8> = match is_half {
+                true => array.values.iter().flat_map(|&value| half(value).to_le_bytes()).collect(),
+                false => array.values.iter().flat_map(|&value| single(value).to_le_bytes()).collect(),
+            };
+            let shape: Vec<String> = array.shape.iter().map(u64::to_string).collect();
+            let header = format!(
+                "{{'descr': '<f{}', 'fortran_order': False, 'shape': ({}), }}\n",
+                if is_half { 2 } else { 4 },
+                shape.join(", ")
+            );
+            let mut file = b"\x93NUMPY\x01\x00".to_vec();
+            file.extend((header.len() as u16).to_le_bytes());
+            file.extend(header.as_bytes());
+            file.extend(bytes);
+            std::fs::write(&path, file).unwrap();
+        }
+        self
+    }
+
     fn without(self, names: &[&str]) -> Self {
         for name in names {
             std::fs::remove_file(self.candidate.path().join(format!("{name}.npy"))).unwrap();
@@ -114,6 +146,59 @@ impl Folders {
             assert!(why.contains(words), "{why}");
         }
     }
+}
+
+/// The number of half precision that is nearest, as its bits. (IEEE 754, 3.4)
+fn half_bits(value: f64) -> u16 {
+    let sign = if value.is_sign_negative() { 0x8000 } else { 0 };
+    let size = value.abs();
+    if size.is_nan() {
+        return 0x7e00;
+    }
+    // Units of the last place are 2^-24 below the smallest normal number, 2^-14.
+    let exponent = (size.log2().floor().max(-14.0) as i32).min(16);
+    let units = (size / 2.0_f64.powi(exponent - 10)).round_ties_even();
+    let bits = if size.is_infinite() { 31.0 * 1024.0 } else { units + f64::from(exponent + 14) * 1024.0 };
+    sign | bits as u16
+}
+
+const VALUES: [&str; 6] = ["t", "range", "point", "normal", "barycentric", "cos_incidence"];
+
+#[test]
+fn exact_answers_in_fewer_digits_are_right() {
+    for is_half in [false, true] {
+        let checked = Folders::right().store(is_half, 0, &VALUES).check();
+        assert!(checked.passes(), "half {is_half}: {:?}", checked.comparison.wrong().next());
+        // Without faces the distance tells which one is met.
+        assert!(Folders::right().store(is_half, 0, &VALUES).without(&["face"]).check().passes());
+        // Half a unit is allowed, a whole one is not.
+        for name in VALUES {
+            let checked = Folders::right().store(is_half, 1, &[name]).check();
+            let of = checked.comparison.values.iter().find(|tally| tally.value.name() == name).unwrap();
+            assert!(
+                10 * of.wrong > 8 * of.compared,
+                "half {is_half}: {} of {} {name}",
+                of.wrong,
+                of.compared
+            );
+        }
+    }
+}
+
+#[test]
+fn mistakes_are_found_in_arrays_of_fewer_digits() {
+    for is_half in [false, true] {
+        let scaled = Folders::right().change("t", |_, t| t * 1.25).change("range", |_, range| range * 1.25);
+        let checked = scaled.store(is_half, 0, &VALUES).check();
+        let why = checked.why.expect("an explanation");
+        assert!(why.contains("1.25"), "half {is_half}: {why}");
+    }
+    let millimetres = Folders::right().change("t", |_, t| t * 1e3).change("range", |_, range| range * 1e3);
+    millimetres.change("point", |_, part| part * 1e3).store(false, 0, &VALUES).expect_why(&["thousandths"]);
+    let length = Folders::right().change("normal", |_, part| part * 3.0).store(false, 0, &VALUES);
+    length.expect_why(&["normals are not 1 long"]);
+    let turned = Folders::right().change("cos_incidence", |_, cos| libm::acos(cos).to_degrees());
+    turned.store(false, 0, &VALUES).expect_why(&["angles in degrees"]);
 }
 
 /// What a single-precision program has of a number.

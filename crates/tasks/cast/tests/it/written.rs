@@ -5,8 +5,8 @@ use std::path::Path;
 use glam::DVec3;
 use raypencil_cast::{
     Answers, CandidateConventions, CastSource, CastValue, Comparison, Questions, RayArray, RayVerdict,
-    Stated, Wrong, cast, cast_warnings, check_ray_pack, compare, counts_text, open_edges, rays_from_bytes,
-    read_stated, write_answers, write_comparison, write_ray_pack,
+    Stated, StoredErrors, Wrong, cast, cast_warnings, check_ray_pack, compare, counts_text, open_edges,
+    rays_from_bytes, read_stated, write_answers, write_comparison, write_ray_pack,
 };
 use raypencil_files::{read_npy_numbers, write_npy_numbers};
 use raypencil_scene::{CastRay, FaceId, Precision, Reading, Side, Sides, Silent, Triangles};
@@ -205,30 +205,29 @@ fn rays_that_are_compared_piece_by_piece_are_counted_as_all_at_once() {
 }
 
 #[test]
-fn storing_a_range_widens_its_own_bound_and_storing_a_point_those_of_point_and_t() {
+fn storing_a_value_widens_its_own_bound_and_no_other() {
     let mesh = square();
     let rays = [CastRay::new(DVec3::new(3.0, 1.0, 3.0), DVec3::new(0.0, 0.0, -2.0))];
     let right = Stated::of(&cast(&mesh, &rays, Sides::Both, Questions::default(), &Silent));
-    let wrong = |change: &dyn Fn(&mut Stated)| {
-        let mut stated = right.clone();
-        change(&mut stated);
-        compare(&mesh, &rays, Sides::Both, &stated, Precision::F64, &Silent).counts().wrong
-    };
-    // Lengths of 1 mm: of t it is half of that, since the direction is 2 long.
-    let range = |stated: &mut Stated| stated.range.as_mut().unwrap()[0] += 1e-3;
-    let t = |stated: &mut Stated| stated.t.as_mut().unwrap()[0] += 5e-4;
-    let point = |stated: &mut Stated| stated.point.as_mut().unwrap()[0].x += 1e-3;
-    type Change<'c> = &'c dyn Fn(&mut Stated);
-    let changes: [(Change<'_>, bool); 3] = [(&range, true), (&t, false), (&point, false)];
-    for (change, is_range) in changes {
-        assert_eq!(wrong(change), 1);
-        for (of_range, size) in [(true, 1.001e-3), (true, 0.999e-3), (false, 1.001e-3), (false, 0.999e-3)] {
-            let found = wrong(&|stated: &mut Stated| {
-                change(stated);
-                let error = Some(vec![size]);
-                if of_range { stated.range_error = error } else { stated.point_error = error }
-            });
-            assert_eq!(found == 0, of_range == is_range && size > 1e-3, "range {of_range}, {size}");
+    type Change = fn(&mut Stated);
+    type Errors = fn(&mut StoredErrors) -> &mut Option<Vec<f64>>;
+    let values: [(Change, Errors); 6] = [
+        (|stated| stated.t.as_mut().unwrap()[0] += 1e-3, |stored| &mut stored.t),
+        (|stated| stated.range.as_mut().unwrap()[0] += 1e-3, |stored| &mut stored.range),
+        (|stated| stated.point.as_mut().unwrap()[0].x += 1e-3, |stored| &mut stored.point),
+        (|stated| stated.normal.as_mut().unwrap()[0].y += 1e-3, |stored| &mut stored.normal),
+        (|stated| stated.barycentric.as_mut().unwrap()[0].z += 1e-3, |stored| &mut stored.barycentric),
+        (|stated| stated.cos_incidence.as_mut().unwrap()[0] -= 1e-3, |stored| &mut stored.cos_incidence),
+    ];
+    for (k, (change, _)) in values.iter().enumerate() {
+        for (other, (_, errors)) in values.iter().enumerate() {
+            for size in [0.999e-3, 1.001e-3] {
+                let mut stated = right.clone();
+                change(&mut stated);
+                *errors(&mut stated.stored) = Some(vec![size]);
+                let counts = compare(&mesh, &rays, Sides::Both, &stated, Precision::F64, &Silent).counts();
+                assert_eq!(counts.wrong == 0, k == other && size > 1e-3, "value {k}, stored {other}, {size}");
+            }
         }
     }
 }

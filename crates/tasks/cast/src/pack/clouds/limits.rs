@@ -212,7 +212,7 @@ pub(super) fn of_steps(list: &mut List<'_>, trial: &Trial, pairs: &[(usize, f64)
             undo_in_field(trial, step, is_cut);
         });
     }
-    if let (Some(ranges), Some(errors)) = (&trial.stated.range, &trial.stated.range_error) {
+    if let (Some(ranges), Some(errors)) = (&trial.stated.range, &trial.stated.stored.range) {
         let some: Vec<(f64, f64, f64)> =
             pairs.iter().map(|(k, exact)| (ranges[*k], errors[*k], *exact)).collect();
         let numbers: Vec<[f64; 2]> = some
@@ -260,7 +260,7 @@ fn multiples(trial: &Trial, step: f64) -> Vec<bool> {
 
 /// Takes a step out of the field `range`, if there is one: a multiple may be off by half of it, after half of it is added where it was cut.
 fn undo_in_field(trial: &mut Trial, step: f64, is_cut: bool) {
-    if let (Some(ranges), Some(errors)) = (&mut trial.stated.range, &mut trial.stated.range_error) {
+    if let (Some(ranges), Some(errors)) = (&mut trial.stated.range, &mut trial.stated.stored.range) {
         let is_of_step: Vec<bool> =
             ranges.iter().zip(&*errors).map(|(range, error)| is_multiple(*range, *error, step)).collect();
         if is_cut {

@@ -66,7 +66,7 @@ pub(super) fn scaled(trial: &mut Trial, factor: f64) {
         cloud.error.iter_mut().for_each(|error| *error *= factor);
     }
     trial.stated.range.iter_mut().flatten().for_each(|range| *range *= factor);
-    trial.stated.range_error.iter_mut().flatten().for_each(|error| *error *= factor);
+    trial.stated.stored.range.iter_mut().flatten().for_each(|error| *error *= factor);
 }
 
 /// Moves each point along its ray: `length` gives the right distance from the ray's origin, by the ray and the one that is stated.

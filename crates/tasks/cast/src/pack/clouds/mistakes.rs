@@ -249,7 +249,7 @@ fn of_depth<'a>(list: &mut List<'a>, case: &'a CloudCase<'a>, scan: &'a Scan) {
                     .map(|(&index, ray)| safe(cosine(index, ray)).recip())
                     .collect();
                 stated.range.iter_mut().flatten().zip(&factors).for_each(|(range, factor)| *range *= factor);
-                let errors = stated.range_error.iter_mut().flatten();
+                let errors = stated.stored.range.iter_mut().flatten();
                 errors.zip(&factors).for_each(|(error, factor)| *error *= factor.abs().max(1.0));
             });
         }
@@ -319,7 +319,7 @@ fn estimate_field(list: &mut List<'_>, trial: &Trial, range_of: &dyn Fn(&CastRay
     let mut add_factor = |words: String, by: f64| {
         list.add(words, false, move |trial| {
             let stated = &mut trial.stated;
-            let numbers = [&mut stated.range, &mut stated.range_error].into_iter().flatten().flatten();
+            let numbers = [&mut stated.range, &mut stated.stored.range].into_iter().flatten().flatten();
             numbers.for_each(|number| *number /= by);
         });
     };

@@ -14,7 +14,7 @@ use super::fit::rounded;
 use super::keys::{BY_RING, Clock, Keys, is_key, usual_ring};
 use super::rules::{Places, assigned, backwards, by_direction, rings, swapped};
 use crate::cloud::CloudFrame;
-use crate::comparison::Stated;
+use crate::comparison::{Stated, StoredErrors};
 use crate::pack::candidate::CandidateConventions;
 use crate::pack::mistakes::CloudPart;
 use crate::pack::scan::Scan;
@@ -67,8 +67,9 @@ pub(in crate::pack) struct CloudCase<'a> {
 impl CloudCase<'_> {
     /// What the cloud states of the rays.
     pub(in crate::pack) fn stated(&self) -> Stated {
-        let (range, range_error) = self.ranges.clone().unzip();
-        let mut stated = Stated { range, range_error, ..Stated::default() };
+        let (range, of_storing) = self.ranges.clone().unzip();
+        let stored = StoredErrors { range: of_storing, ..StoredErrors::default() };
+        let mut stated = Stated { range, stored, ..Stated::default() };
         self.part.state(self.rays, &mut stated);
         stated
     }
