@@ -5,7 +5,8 @@ use raypencil_referee::ExactCast;
 use raypencil_scene::{CastRay, Sides};
 
 use super::clouds::fit::{median, rounded};
-use super::mistakes::{Extra, Group, Trial};
+use super::mistakes::{Extra, Group};
+use super::trial::Trial;
 
 /// Rays from which a number is found, at least: of fewer, a number fits whatever is wrong.
 const MIN_FITTED: usize = 12;

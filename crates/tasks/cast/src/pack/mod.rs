@@ -7,7 +7,9 @@
 //! candidate   another program's arrays
 //! clouds/     another program's point cloud
 //! lengths     a factor or a length by which arrays are off
-//! mistakes    what a candidate may do otherwise, undone one by one and two by two
+//! trial       a question and its stated answers, as mistakes change them
+//! mistakes    what a candidate may do otherwise, in words, and what undoes it
+//! explain     which of these, or which two, explain why a candidate is wrong
 //! check       a candidate against a pack
 //! report      the check in the form of every check
 //! ```
@@ -15,11 +17,13 @@
 mod candidate;
 mod check;
 mod clouds;
+mod explain;
 mod lengths;
 mod mistakes;
 mod read;
 mod report;
 mod scan;
+mod trial;
 mod write;
 
 pub use candidate::{CandidateConventions, CloudConventions, read_candidate as read_stated};

@@ -7,8 +7,8 @@ use raypencil_scene::{CastRay, Precision, Reading, Sides, Triangles};
 
 use crate::answers::FirstHit;
 use crate::comparison::{Comparison, RayVerdict, Stated, compare_with, normal_error};
-use crate::pack::mistakes::CloudPart;
 use crate::pack::scan::{Scan, ScanReturns};
+use crate::pack::trial::CloudPart;
 use crate::returns::{BeamReturn, BeamReturns};
 
 /// Roundings of a strength beside those of its cosines and ranges: a product, two quotients and a sum for each of its rays. An exponential, and its

@@ -7,7 +7,7 @@ use raypencil_scene::{CastRay, Reading, Sides};
 
 use super::fit::{median, rounded};
 use super::list::{List, along_of};
-use crate::pack::mistakes::{CloudPart, Trial};
+use crate::pack::trial::{CloudPart, Trial};
 
 /// Points from which a number is found, at least: of fewer, a number fits whatever is wrong.
 const MIN_FITTED: usize = 12;

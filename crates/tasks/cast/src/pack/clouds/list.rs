@@ -3,8 +3,9 @@
 use glam::DVec3;
 use raypencil_scene::{CastRay, Pose};
 
-use crate::pack::mistakes::{CloudPart, Extra, Group, Trial};
+use crate::pack::mistakes::{Extra, Group};
 use crate::pack::scan::{Scan, moved};
+use crate::pack::trial::{CloudPart, Trial};
 
 /// Mistakes, one after the other.
 pub(super) struct List<'a> {

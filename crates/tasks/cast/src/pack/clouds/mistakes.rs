@@ -12,8 +12,9 @@ use super::places::{of_exchanged_channels, of_order, of_returns};
 use super::read::{CloudCase, pose_of};
 use super::turn::{Turn, azimuth_deg, turned, wrapped_deg};
 use crate::cloud::CloudFrame;
-use crate::pack::mistakes::{OfCloud, Trial};
+use crate::pack::mistakes::OfCloud;
 use crate::pack::scan::{Scan, moved};
+use crate::pack::trial::Trial;
 
 /// Rays from which a number is estimated, at most.
 const MAX_FITTED: usize = 200;

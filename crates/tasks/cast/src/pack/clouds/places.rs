@@ -8,8 +8,8 @@ use super::list::{List, along};
 use super::read::CloudCase;
 use super::turn::{Turn, turned};
 use crate::cloud::ranks;
-use crate::pack::mistakes::Trial;
 use crate::pack::scan::{Scan, moved};
+use crate::pack::trial::Trial;
 
 /// The sequence and channel whose point stands in the place of these, if there is one.
 type OtherPlace<'a> = Box<dyn Fn(usize, usize) -> Option<(usize, usize)> + 'a>;

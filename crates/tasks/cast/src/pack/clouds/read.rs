@@ -16,8 +16,8 @@ use super::rules::{Places, assigned, backwards, by_direction, rings, swapped};
 use crate::cloud::CloudFrame;
 use crate::comparison::{Stated, StoredErrors};
 use crate::pack::candidate::CandidateConventions;
-use crate::pack::mistakes::CloudPart;
 use crate::pack::scan::Scan;
+use crate::pack::trial::CloudPart;
 
 /// What was read of a cloud, for reports.
 #[derive(Debug, Clone, PartialEq)]
