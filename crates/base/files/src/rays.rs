@@ -25,10 +25,17 @@ const NPY_MAGIC: &[u8] = b"\x93NUMPY";
 /// What a row of numbers must be.
 const ROW: &str = "6 numbers (origin, direction), 8 (origin, direction, t_min, t_max) or 9 (with t_blind)";
 
-/// Reads rays from a file: NPY of shape (..., 6), (..., 8) or (..., 9), or CSV with 6, 8 or 9 numbers in a row.
+/// Names of the numbers of a ray, in their order.
+const NAMES: [&str; 9] = ["ox", "oy", "oz", "dx", "dy", "dz", "t_min", "t_max", "t_blind"];
+
+/// How many of them each ray must have.
+const MIN_NAMES: usize = 6;
+
+/// Reads rays from a file: NPY of shape (..., 6), (..., 8) or (..., 9), or CSV with 6, 8 or 9 numbers in a row, or with columns named by a
+/// heading: `ox`, `oy`, `oz`, `dx`, `dy`, `dz` and if wanted `t_min`, `t_max`, `t_blind`, in any order.
 ///
 /// # Errors
-/// Names the file, and the number, row or ray that is wrong.
+/// Names the file, and the number, line or ray that is wrong; a file without a ray.
 pub fn read_rays(path: &Path) -> Result<RayArray, FileError> {
     // The header of an NPY file comes on top of its numbers, at most 2^16 bytes.
     let most = Limits::default().bytes + (1 << 16);
@@ -41,17 +48,22 @@ pub fn read_rays(path: &Path) -> Result<RayArray, FileError> {
 /// # Errors
 /// As [`read_rays`].
 pub fn rays_from_bytes(bytes: &[u8], file: &Path) -> Result<RayArray, FileError> {
-    let (shape, width, numbers) = match bytes.starts_with(NPY_MAGIC) {
-        true => of_npy(bytes, file)?,
-        false => of_csv(bytes).map_err(|fault| FileError::Array(fault.in_file(file)))?,
+    match bytes.starts_with(NPY_MAGIC) {
+        true => of_npy(bytes, file),
+        false => of_csv(bytes, file),
+    }
+}
+
+/// A ray from its 6, 8 or 9 numbers, if they are valid. `line` is where it stands, if that is known.
+fn checked(row: &[f64], index: usize, (file, line): (&Path, Option<u64>)) -> Result<CastRay, FileError> {
+    let ray = ray(row);
+    let checked = ray.validate("").or_else(|_| ray.validate(&format!("ray {index}")));
+    let origin = || match line {
+        Some(line) => format!("{}: line {line}", file.display()),
+        None => file.display().to_string(),
     };
-    let rays = numbers.chunks_exact(width).enumerate().map(|(index, row)| {
-        let ray = ray(row);
-        let checked = ray.validate("").or_else(|_| ray.validate(&format!("ray {index}")));
-        checked.map_err(|source| FileError::Scene { origin: file.display().to_string(), source })?;
-        Ok(ray)
-    });
-    Ok(RayArray { shape, rays: rays.collect::<Result<_, FileError>>()? })
+    checked.map_err(|source| FileError::Scene { origin: origin(), source })?;
+    Ok(ray)
 }
 
 /// A ray from its 6, 8 or 9 numbers.
@@ -84,21 +96,21 @@ pub fn ray_rows(rays: &[CastRay]) -> (usize, Vec<f64>) {
     (width, rays.iter().flat_map(row).collect())
 }
 
-type Table = (Vec<u64>, usize, Vec<f64>);
-
-fn of_npy(bytes: &[u8], file: &Path) -> Result<Table, FileError> {
+fn of_npy(bytes: &[u8], file: &Path) -> Result<RayArray, FileError> {
     let array = npy_numbers_from_bytes(bytes, file)?;
-    match array.shape.split_last() {
-        Some((&width @ (6 | 8 | 9), leading)) => Ok((leading.to_vec(), width as usize, array.values)),
-        _ => {
-            let fault = Fault::new(
-                "shape",
-                format!("{:?}", array.shape),
-                format!("(..., 6), (..., 8) or (..., 9): {ROW}"),
-            );
-            Err(FileError::Array(fault.in_file(file)))
-        }
+    let refuse = |expected: String| {
+        let fault = Fault::new("shape", format!("{:?}", array.shape), expected);
+        Err(FileError::Array(fault.in_file(file)))
+    };
+    let Some((&width @ (6 | 8 | 9), leading)) = array.shape.split_last() else {
+        return refuse(format!("(..., 6), (..., 8) or (..., 9): {ROW}"));
+    };
+    if array.values.is_empty() {
+        return refuse("one ray or more".into());
     }
+    let rows = array.values.chunks_exact(width as usize).enumerate();
+    let rays = rows.map(|(index, row)| checked(row, index, (file, None)));
+    Ok(RayArray { shape: leading.to_vec(), rays: rays.collect::<Result<_, _>>()? })
 }
 
 /// The line on which a record stands, whose position is where the reader began to look for it: before comments and empty lines.
@@ -108,36 +120,88 @@ fn line_of(bytes: &[u8], start: &csv::Position) -> u64 {
     start.line() + rest.split(|byte| *byte == b'\n').take_while(is_skipped).count() as u64
 }
 
-fn of_csv(bytes: &[u8]) -> Result<Table, Fault> {
+/// The heading of a CSV file: for each of its columns the place of its number in a ray.
+struct Heading {
+    line: u64,
+    places: Vec<usize>,
+}
+
+impl Heading {
+    fn of<'a>(fields: impl Iterator<Item = &'a str>, line: u64) -> Result<Self, Fault> {
+        let refuse = |found: String| {
+            let (needed, wanted) = NAMES.split_at(MIN_NAMES);
+            let expected = format!(
+                "a heading of the names {}, and if wanted {}, in any order with commas between them",
+                needed.join(","),
+                wanted.join(",")
+            );
+            Fault::new(format!("line {line}"), found, expected)
+        };
+        let mut places = Vec::new();
+        for field in fields {
+            let place = NAMES.iter().position(|name| field.eq_ignore_ascii_case(name));
+            match place.ok_or_else(|| refuse(format!("{field:?}")))? {
+                place if places.contains(&place) => return Err(refuse(format!("{} twice", NAMES[place]))),
+                place => places.push(place),
+            }
+        }
+        match (0..MIN_NAMES).find(|place| !places.contains(place)) {
+            Some(place) => Err(refuse(format!("no {}", NAMES[place]))),
+            None => Ok(Self { line, places }),
+        }
+    }
+
+    /// A heading in one of the comments before the first line of numbers, as NumPy's `savetxt` writes it. Other comments are none.
+    fn of_comments(bytes: &[u8]) -> Option<Self> {
+        let lines = bytes.split(|byte| *byte == b'\n').zip(1..);
+        let before = lines.take_while(|(line, _)| line.starts_with(b"#") || line.trim_ascii().is_empty());
+        let heading = |(line, number): (&[u8], u64)| {
+            let text = std::str::from_utf8(line).ok()?.trim_start_matches('#');
+            Self::of(text.split(',').map(str::trim), number).ok()
+        };
+        before.filter_map(heading).last()
+    }
+
+    /// The numbers of a ray from those of a row; what has no column is left at what it is without.
+    fn row(&self, numbers: &[f64]) -> [f64; 9] {
+        let mut row = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, f64::INFINITY, 0.0];
+        self.places.iter().zip(numbers).for_each(|(place, number)| row[*place] = *number);
+        row
+    }
+}
+
+fn of_csv(bytes: &[u8], file: &Path) -> Result<RayArray, FileError> {
+    let in_file = |fault: Fault| FileError::Array(fault.in_file(file));
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
         .from_reader(bytes);
-    let (mut width, mut rows, mut numbers) = (None, 0_u64, Vec::new());
+    let mut heading = Heading::of_comments(bytes);
+    let mut width = heading.as_ref().map(|heading| (heading.places.len(), heading.line));
+    let (mut rays, mut numbers, mut is_first) = (Vec::new(), Vec::new(), true);
     for record in reader.records() {
         let record = record.map_err(|error| {
             let line = error.position().map_or(0, csv::Position::line);
-            Fault::new(
-                format!("line {line}"),
-                "bytes that are no text",
-                "rows of numbers with commas between them",
-            )
+            let expected = "rows of numbers with commas between them";
+            in_file(Fault::new(format!("line {line}"), "bytes that are no text", expected))
         })?;
         let line = record.position().map_or(0, |start| line_of(bytes, start));
         // Numbers with something else than commas between them are no names of columns.
         let is_number = |word: &str| word.parse::<f64>().is_ok();
         let has_number = |field: &str| field.split(|c: char| c == ';' || c.is_whitespace()).any(is_number);
-        let is_heading = rows == 0 && !record.iter().any(has_number);
-        if is_heading && record.iter().any(|field| !field.is_empty()) && width.is_none() {
-            width = Some((record.len(), line));
-            // The heading must fit what follows.
+        let is_heading = std::mem::take(&mut is_first) && !record.iter().any(has_number);
+        if is_heading && record.iter().any(|field| !field.is_empty()) {
+            let of_line = Heading::of(record.iter(), line).map_err(in_file)?;
+            width = Some((of_line.places.len(), line));
+            heading = Some(of_line);
             continue;
         }
-        let refuse =
-            |found: String, expected: String| Err(Fault::new(format!("line {line}"), found, expected));
-        if !matches!(record.len(), 6 | 8 | 9) {
+        let refuse = |found: String, expected: String| {
+            Err(in_file(Fault::new(format!("line {line}"), found, expected)))
+        };
+        if heading.is_none() && !matches!(record.len(), 6 | 8 | 9) {
             let found = match record.len() {
                 1 if has_number(&record[0]) => "no comma between its numbers".into(),
                 count => format!("{count} fields"),
@@ -150,16 +214,21 @@ fn of_csv(bytes: &[u8]) -> Result<Table, Fault> {
             return refuse(format!("{} fields", record.len()), format!("{first}, as line {of_line} has"));
         }
         width.get_or_insert((record.len(), line));
+        numbers.clear();
         for (column, field) in record.iter().enumerate() {
             match field.parse::<f64>() {
                 Ok(number) => numbers.push(number),
                 Err(_) => return refuse(format!("field {}: {field:?}", column + 1), "a number".into()),
             }
         }
-        rows += 1;
+        let place = (file, Some(line));
+        rays.push(match &heading {
+            Some(heading) => checked(&heading.row(&numbers), rays.len(), place)?,
+            None => checked(&numbers, rays.len(), place)?,
+        });
     }
-    let Some((width, _)) = width.filter(|_| rows > 0) else {
-        return Err(Fault::new("file", "no ray", format!("rows of {ROW}")));
-    };
-    Ok((vec![rows], width, numbers))
+    if rays.is_empty() {
+        return Err(in_file(Fault::new("file", "no ray", format!("rows of {ROW}"))));
+    }
+    Ok(RayArray { shape: vec![rays.len() as u64], rays })
 }

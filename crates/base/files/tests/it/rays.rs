@@ -38,8 +38,6 @@ fn arrays_of_any_leading_shape_are_rays() {
     let numbers = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.25, 8.0, 0.5];
     let found = read(&npy("<f4", "(1, 9)", &singles(&numbers))).unwrap().rays[0];
     assert_eq!((found.t_min, found.t_max, found.t_blind), (0.25, 8.0, 0.5));
-    // No rays are rays.
-    assert_eq!(read(&npy("<f8", "(0, 6)", &[])), Ok(RayArray { shape: vec![0], rays: vec![] }));
 }
 
 #[test]
@@ -53,6 +51,27 @@ fn rows_of_numbers_are_rays() {
     assert_eq!(found.rays[0].t_max, f64::INFINITY);
     assert_eq!((found.rays[1].t_min, found.rays[1].t_max, found.rays[1].t_blind), (0.5, 2.0, 0.0));
     assert_eq!(read(b"0,0,0,1,0,0,0,inf,0.8").unwrap().rays[0].t_blind, 0.8);
+}
+
+#[test]
+fn a_heading_names_the_columns() {
+    let ray = |text: &str| {
+        let found = read(text.as_bytes()).unwrap();
+        assert_eq!(found.shape, [1]);
+        let ray = found.rays[0];
+        (ray.origin.to_array(), ray.direction.to_array(), [ray.t_min, ray.t_max, ray.t_blind])
+    };
+    let both = ([1.0, 2.0, 3.0], [4.0, 5.0, 6.0]);
+    let plain = (both.0, both.1, [0.0, f64::INFINITY, 0.0]);
+    assert_eq!(ray("dx,dy,dz,ox,oy,oz\n4,5,6,1,2,3"), plain);
+    assert_eq!(ray("OX, oy ,oz,dx,DY,dz\n1,2,3,4,5,6"), plain);
+    // Each of the ends may be left out.
+    assert_eq!(ray("t_max,dx,dy,dz,ox,oy,oz\n7,4,5,6,1,2,3"), (both.0, both.1, [0.0, 7.0, 0.0]));
+    let all = "ox,oy,oz,dx,dy,dz,t_blind,t_max,t_min\n1,2,3,4,5,6,0.5,7,0.25";
+    assert_eq!(ray(all), (both.0, both.1, [0.25, 7.0, 0.5]));
+    // NumPy's savetxt writes its heading as a comment; other comments are none.
+    assert_eq!(ray("# by me\n# dx,dy,dz,ox,oy,oz\n4,5,6,1,2,3"), plain);
+    assert_eq!(ray("# dx,dy,dz\n1,2,3,4,5,6\n# dx,dy,dz,ox,oy,oz\n"), plain);
 }
 
 #[test]
@@ -78,15 +97,31 @@ fn each_wrong_file_is_told_where_it_is_wrong() {
         (b"0;0;0;0;0;1\n".to_vec(), "rays: line 1: no comma between its numbers; expected 6 numbers"),
         (b"0 0 0 0 0 1\n".to_vec(), "rays: line 1: no comma between its numbers; expected 6 numbers"),
         (b"0\t0\t0\t0\t0\t1\n".to_vec(), "rays: line 1: no comma between its numbers; expected 6 numbers"),
-        (b"a,b,c,d,e,f\n0,0,0,0,0,1,0,1".to_vec(), "rays: line 2: 8 fields; expected 6, as line 1 has"),
+        (b"ox,oy,oz,dx,dy,dz\n0,0,0,0,0,1,0,1".to_vec(), "rays: line 2: 8 fields; expected 6, as line 1 has"),
+        (b"# dx,dy,dz,ox,oy,oz\n0,0,1,0".to_vec(), "rays: line 2: 4 fields; expected 6, as line 1 has"),
+        (
+            b"a,b,c,d,e,f\n0,0,0,0,0,1".to_vec(),
+            "rays: line 1: \"a\"; expected a heading of the names ox,oy,oz,dx,dy,dz, and if wanted t_min,t_max,t_blind, in any order",
+        ),
+        (b"\nox,oy,oz,dx,dy\n".to_vec(), "rays: line 2: no dz; expected a heading of the names"),
+        (b"ox,oy,oz,dx,dy,dz,dx\n".to_vec(), "rays: line 1: dx twice; expected a heading of the names"),
+        (
+            b"ox oy oz dx dy dz\n0 0 0 0 0 1".to_vec(),
+            "rays: line 1: \"ox oy oz dx dy dz\"; expected a heading",
+        ),
+        (npy("<f8", "(0, 6)", &[]), "rays: shape: [0, 6]; expected one ray or more"),
+        (npy("<f4", "(4, 0, 9)", &[]), "rays: shape: [4, 0, 9]; expected one ray or more"),
         (b"0,0,0,0,0,1\n0,0,x,0,0,1".to_vec(), "rays: line 2: field 3: \"x\"; expected a number"),
         (b"0,0,0,0,0,1\na,b,c,d,e,f".to_vec(), "rays: line 2: field 1: \"a\"; expected a number"),
-        (b"0,0,0,0,0,1\n0,0,0,nan,0,1".to_vec(), "rays: ray 1.direction is [NaN, 0, 1]: expected"),
-        (b"0,0,0,0,0,1,2,1".to_vec(), "rays: ray 0.t_max is 1: expected 2 (t_min) to 1e30, or infinity"),
-        (b"0,0,0,0,0,1,0,inf,-1".to_vec(), "rays: ray 0.t_blind is -1: expected 0 to 1e30"),
-        (b"0,0,0,0,0,1,0,2,3".to_vec(), "rays: ray 0.t_blind is 3: expected 0 to 2 (t_max)"),
+        (b"0,0,0,0,0,1\n0,0,0,nan,0,1".to_vec(), "rays: line 2: ray 1.direction is [NaN, 0, 1]: expected"),
+        (
+            b"0,0,0,0,0,1,2,1".to_vec(),
+            "rays: line 1: ray 0.t_max is 1: expected 2 (t_min) to 1e30, or infinity",
+        ),
+        (b"0,0,0,0,0,1,0,inf,-1".to_vec(), "rays: line 1: ray 0.t_blind is -1: expected 0 to 1e30"),
+        (b"0,0,0,0,0,1,0,2,3".to_vec(), "rays: line 1: ray 0.t_blind is 3: expected 0 to 2 (t_max)"),
         (b"0,0,0,0,0,1,0,1,0,0".to_vec(), "rays: line 1: 10 fields; expected 6 numbers"),
-        (b"0,0,0,0,0,1,-1,1".to_vec(), "rays: ray 0.t_min is -1: expected 0 to 1e30"),
+        (b"0,0,0,0,0,1,-1,1".to_vec(), "rays: line 1: ray 0.t_min is -1: expected 0 to 1e30"),
         (b"".to_vec(), "rays: file: no ray; expected rows of 6 numbers"),
         (b"# nothing\nox,oy,oz,dx,dy,dz\n".to_vec(), "rays: file: no ray; expected rows"),
         (b"\xff\xfe\n".to_vec(), "rays: line 1: bytes that are no text; expected rows of numbers"),

@@ -141,7 +141,7 @@ fn rubbish_is_refused_with_its_place() {
     };
     let (cube, rays) = (data("cube.obj"), data("cube.npy"));
     refused(&["bad.obj", &rays, "-o", "out"], &["bad.obj: line 2: vertex 3", "expected 1 to 1"]);
-    refused(&[&cube, "bad.csv", "-o", "out"], &["bad.csv: ray 1.direction is [0, 0, 0]"]);
+    refused(&[&cube, "bad.csv", "-o", "out"], &["bad.csv: line 2: ray 1.direction is [0, 0, 0]"]);
     refused(&[&cube, "none.npy"], &["none.npy: cannot read"]);
     refused(&[&cube, "--ray", "1,2,3"], &["--ray", "3 fields; expected 6 numbers"]);
     refused(&[&cube], &["no rays are given; expected RAYS, --ray"]);
