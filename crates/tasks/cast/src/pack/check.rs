@@ -55,7 +55,9 @@ impl RayPackChecked {
     /// all that the cloud says of it.
     pub fn passes(&self) -> bool {
         self.comparison.passes()
-            && self.cloud.as_ref().is_none_or(|cloud| cloud.strays.is_empty() && cloud.wrong_keys.is_empty())
+            && self.cloud.as_ref().is_none_or(|cloud| {
+                cloud.strays.is_empty() && cloud.wrong_keys.is_empty() && cloud.wrong_numbers.is_empty()
+            })
     }
 
     /// The command that shows everything about the ray with this index.
@@ -168,7 +170,9 @@ pub fn check_ray_pack(
         None => read_candidate(candidate, &rays.shape, conventions)?,
     };
     let mut excused = None;
-    if let (Some(case), Some(beams)) = (&case, beams) {
+    if let (Some(case), Some(beams)) = (&mut case, beams) {
+        let wrong_numbers = &mut case.facts.wrong_numbers;
+        *wrong_numbers = beams.closed(wrong_numbers, (&exact, &mesh, sides), precision);
         let comparison = compare_with(&exact, &mesh, case.rays, sides, &stated, precision);
         excused = Some(beams.excused(
             (case.rays, &case.part),
@@ -291,10 +295,10 @@ fn judge(
     });
     let answers = cast_with(exact, rays, sides, Questions::default(), progress);
     let cloud = case.map(|case| case.facts);
-    let of_keys = cloud.as_ref().and_then(|cloud| cloud.keys_why.clone());
+    let of_fields = cloud.as_ref().and_then(CloudFacts::why);
     let why = match why {
         Some(explanation) => explanation.map(|explanation| explanation.sentence()),
-        None => of_keys.map(|words| format!("100.0000 % agree if {words}")),
+        None => of_fields.map(|words| format!("100.0000 % agree if {words}")),
     };
     Judged { comparison, why, answers, cloud }
 }

@@ -1,5 +1,7 @@
 //! A check of a pack of rays in the form of every check.
 
+use std::collections::BTreeSet;
+
 use raypencil_judge::Class;
 use raypencil_pack::{
     BundleFindings, CheckFindings, ItemFindings, PackForm, PackLabel, Said, WorstOf, WrongRay,
@@ -21,6 +23,9 @@ const HIT: &str = "hit";
 
 /// Key of the fields of a cloud that tell the ray of a point.
 const KEYS: &str = "ring_channel_time";
+
+/// Key of the field of a cloud that has the number of a return.
+const NUMBERS: &str = "return_number";
 
 /// Key of points that belong to no ray, or to one that has another.
 const STRAYS: &str = "points";
@@ -129,6 +134,12 @@ impl RayPackChecked {
                 counted(cloud.wrong_keys.len() as u64, "point", "points")
             ));
         }
+        if !cloud.wrong_numbers.is_empty() {
+            notes.push(format!(
+                "The number of return of {} is another than that of its return.",
+                counted(cloud.wrong_numbers.len() as u64, "point", "points")
+            ));
+        }
         if let Some(first) = cloud.strays.first() {
             notes.push(format!(
                 "{} of no ray, or of one that has another point; the first is point {first}, counted from 0.",
@@ -152,13 +163,16 @@ impl RayPackChecked {
         let of_keys = (keys > 0).then(|| {
             format!("ring, channel or time of {} are those of another ray", counted(keys, "point", "points"))
         });
+        let numbers = cloud.wrong_numbers.len() as u64;
+        let of_numbers = (numbers > 0)
+            .then(|| format!("the number of return of {} is another", counted(numbers, "point", "points")));
         let strays = cloud.strays.len() as u64;
         let of_strays = (strays > 0).then(|| {
             let are = if strays == 1 { "is" } else { "are" };
             format!("{} {are} of no ray, or of one that has another", counted(strays, "point", "points"))
         });
-        (keys + strays > 0).then(|| {
-            let said: Vec<String> = [of_rays, of_keys, of_strays].into_iter().flatten().collect();
+        (keys + numbers + strays > 0).then(|| {
+            let said: Vec<String> = [of_rays, of_keys, of_numbers, of_strays].into_iter().flatten().collect();
             format!("{}.", capital(&said.join("; ")))
         })
     }
@@ -166,9 +180,11 @@ impl RayPackChecked {
     /// The rays as a bundle of this name.
     pub fn bundle(&self, name: &str) -> BundleFindings {
         let counts = self.comparison.counts();
-        let (keys, strays) = match &self.cloud {
-            Some(cloud) => (cloud.wrong_keys.as_slice(), cloud.strays.as_slice()),
-            None => (&[][..], &[][..]),
+        let (keys, numbers, strays) = match &self.cloud {
+            Some(cloud) => {
+                (cloud.wrong_keys.as_slice(), cloud.wrong_numbers.as_slice(), cloud.strays.as_slice())
+            }
+            None => (&[][..], &[][..], &[][..]),
         };
         let mut of_rays = [0; Class::COUNT];
         of_rays[Class::Agree as usize] = counts.same - counts.ties;
@@ -176,7 +192,8 @@ impl RayPackChecked {
         of_rays[Class::Rounding as usize] = counts.rounding;
         of_rays[Class::Defect as usize] = counts.wrong;
         let mut by_class = of_rays;
-        for &ray in keys {
+        let of_fields: BTreeSet<usize> = keys.iter().chain(numbers).copied().collect();
+        for ray in of_fields {
             let class = match &self.comparison.verdicts[ray] {
                 RayVerdict::Same { is_tie: false } => Class::Agree,
                 RayVerdict::Same { is_tie: true } => Class::Tie,
@@ -236,11 +253,16 @@ impl RayPackChecked {
         let points = self.cloud.as_ref().map_or(0, |cloud| cloud.points - strays.len()) as u64;
         let of_keys = (!keys.is_empty())
             .then(|| of_cloud(KEYS, "ring, channel, time", points - keys.len() as u64, keys.len() as u64));
+        let of_numbers = (!numbers.is_empty()).then(|| {
+            let all = self.cloud.as_ref().map_or(0, |cloud| cloud.numbered) as u64;
+            of_cloud(NUMBERS, "number of return", all - numbers.len() as u64, numbers.len() as u64)
+        });
         let of_strays = (!strays.is_empty())
             .then(|| of_cloud(STRAYS, "points of one ray each", points, strays.len() as u64));
         let listed = self.comparison.wrong().map(|(index, wrong)| self.wrong_ray(name, index, &wrong));
         let listed = listed.take(MAX_LISTED);
         let listed = listed.chain(keys.iter().take(MAX_LISTED).map(|ray| self.wrong_key(name, *ray)));
+        let listed = listed.chain(numbers.iter().take(MAX_LISTED).map(|ray| self.wrong_number(name, *ray)));
         let listed = listed.chain(strays.iter().take(MAX_LISTED).map(|point| self.stray(name, *point)));
         BundleFindings {
             name: name.into(),
@@ -249,7 +271,12 @@ impl RayPackChecked {
             by_class,
             not_compared: 0,
             ruled: counts.rounding + counts.wrong,
-            items: std::iter::once(hits.clone()).chain(values).chain(of_keys).chain(of_strays).collect(),
+            items: std::iter::once(hits.clone())
+                .chain(values)
+                .chain(of_keys)
+                .chain(of_numbers)
+                .chain(of_strays)
+                .collect(),
             listed: listed.collect(),
             why: self.why.clone(),
         }
@@ -260,6 +287,13 @@ impl RayPackChecked {
         let words = "ring, channel or time of its point are those of another ray";
         let place = format!("{bundle} {ray}");
         self.wrong_point(bundle, ray, (KEYS, "ring, channel, time"), (place, words), self.ray_command(ray))
+    }
+
+    /// A ray whose point has the number of another return.
+    fn wrong_number(&self, bundle: &str, ray: usize) -> WrongRay {
+        let words = "the number of return of its point is another";
+        let place = format!("{bundle} {ray}");
+        self.wrong_point(bundle, ray, (NUMBERS, "number of return"), (place, words), self.ray_command(ray))
     }
 
     /// A point of no ray, or of one that has another.

@@ -703,6 +703,21 @@ fn fields_of_other_drivers_are_read_as_they_mean_them() {
 }
 
 #[test]
+fn a_doubled_cloud_is_told_as_such() {
+    let trial = Trial::new(&head(), &bend());
+    let dense: Vec<Point> =
+        points(&trial.set, CloudFrame::Mesh).into_iter().filter(|one| one.place.is_finite()).collect();
+    let (count, twice) = (dense.len(), [dense.clone(), dense].concat());
+    let file = trial.write(&twice, Fields::Keys, [twice.len(), 1]);
+    let message = trial.check(&file, CandidateConventions::default()).expect_err("a refusal");
+    let told = format!(
+        "{count} of {} points are of a ray that has a point already, up to 2 points for one",
+        2 * count
+    );
+    assert!(message.contains(&told) && message.ends_with("this pack asks for one return"), "{message}");
+}
+
+#[test]
 fn points_that_no_rule_lays_on_rays_are_refused_with_the_remedy() {
     let trial = Trial::new(&head(), &bend());
     let dense: Vec<Point> =

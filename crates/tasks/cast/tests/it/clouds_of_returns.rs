@@ -262,6 +262,79 @@ fn returns_in_another_order_and_repeated_ones_are_told() {
 }
 
 #[test]
+fn wrong_numbers_of_returns_are_wrong() {
+    let numbered = |keep: Keep, number: &dyn Fn(usize, u32) -> u32| {
+        let trial = Trial::of_room(&still(), keep);
+        let right: Vec<Point> = trial.right().into_iter().filter(|one| one.place.is_finite()).collect();
+        let of = |(k, one): (usize, &Point)| Point { number: number(k, one.number), ..*one };
+        let points: Vec<Point> = right.iter().enumerate().map(of).collect();
+        let others = right.iter().zip(&points).filter(|(a, b)| a.number != b.number).count();
+        (trial.check(&trial.write(&points, Fields::Numbers), Precision::F64).expect("a check"), others)
+    };
+    for keep in RULES {
+        for all in [0, 1, 7] {
+            let (checked, others) = numbered(keep, &|_, _| all);
+            assert_eq!(checked.comparison.counts().wrong, 0);
+            assert_eq!(checked.passes(), others == 0, "{keep:?}, all {all}");
+            let text = checked.document().screen();
+            let cloud = checked.cloud.expect("a cloud");
+            assert_eq!(cloud.wrong_numbers.len(), others, "{keep:?}, all {all}");
+            if others == 0 {
+                assert_eq!((keep, all), (Keep::First, 1));
+                continue;
+            }
+            let why = checked.why.expect("a reason");
+            assert!(
+                why.contains(&format!("if all points have the number of return {all}: it counts")),
+                "{why}"
+            );
+            let told = format!("number of return of {others} points is another");
+            assert!(text.to_lowercase().contains(&told), "{text}");
+        }
+    }
+    // One of them alone, and no reason.
+    let (checked, _) = numbered(Keep::UpTo(2), &|k, number| if k == 9 { 3 } else { number });
+    assert!(!checked.passes() && checked.why.is_none());
+    assert_eq!(checked.cloud.expect("a cloud").wrong_numbers.len(), 1);
+}
+
+#[test]
+fn more_points_than_returns_are_told_as_such() {
+    let trial = Trial::of_room(&still(), Keep::First);
+    let refused = |points: &[Point]| {
+        trial.check(&trial.write(points, Fields::Keys), Precision::F64).expect_err("a refusal")
+    };
+    let dense = |points: Vec<Point>| -> Vec<Point> {
+        points.into_iter().filter(|point| point.place.is_finite()).collect()
+    };
+    let right = dense(trial.right());
+    let (count, twice) = (right.len(), [right.clone(), right.clone()].concat());
+    let words = |more: usize, all: usize| {
+        format!(
+            "points: {more} of {all} points are of a ray that has a point already, up to 2 points for one, by ring and time; \
+             expected one point for each ray: this pack asks for one return"
+        )
+    };
+    assert!(refused(&twice).ends_with(&words(count, 2 * count)), "{}", refused(&twice));
+    let dual = dense(trial.by(Keep::UpTo(2)));
+    assert!(dual.len() > count + count / 50, "{} and {count}", dual.len());
+    assert!(refused(&dual).ends_with(&words(dual.len() - count, dual.len())), "{}", refused(&dual));
+    // Of a pack of two returns, three times the points.
+    let trial = Trial::of_room(&still(), Keep::UpTo(2));
+    let right = dense(trial.right());
+    let thrice = [right.clone(), right.clone(), right].concat();
+    let told = trial.check(&trial.write(&thrice, Fields::Keys), Precision::F64).expect_err("a refusal");
+    assert!(
+        told.contains("points are of a beam that has its points already, up to 6 points for one"),
+        "{told}"
+    );
+    assert!(
+        told.ends_with("expected at most 2 points for each beam: this pack asks for so many returns"),
+        "{told}"
+    );
+}
+
+#[test]
 fn what_right_beams_contradict_is_not_told() {
     // A plate before a wall: no beam has three returns.
     let square = |x: f64, [y, z]: [f64; 2], half: f64| {

@@ -16,6 +16,9 @@ const MAX_STRAY_PERCENT: usize = 1;
 /// the way from its ray to the next is still told.
 const NEARER: f64 = 3.0;
 
+/// Returns that a sensor tells of a pulse, at most: that of the LAS format, 1.4. More points for one ray have wrong fields.
+const MAX_RETURNS: usize = 15;
+
 /// Fields that have the number of a return: this project's own, and that of the LAS format.
 pub(super) const NUMBERS_OF_RETURNS: [&str; 2] = ["return", "return_number"];
 
@@ -41,6 +44,8 @@ pub(super) struct Assigned {
     pub(super) point_of: Vec<Option<usize>>,
     /// Points of no ray, or of one that has another.
     pub(super) strays: Vec<usize>,
+    /// Of the rays, or beams, that have more points than places: how many each has too many.
+    pub(super) crowded: HashMap<usize, usize>,
     /// How it was found, in words.
     pub(super) by: &'static str,
 }
@@ -150,13 +155,17 @@ impl Asked<'_> {
         ray: impl Fn(usize) -> Option<usize>,
         by: &'static str,
     ) -> Assigned {
-        let mut assigned = Assigned { point_of: vec![None; self.rays.len()], strays: Vec::new(), by };
+        let mut assigned = Assigned::none(self.rays.len(), by);
         // What is no point takes the places that are left.
         for pass in [true, false] {
             for point in (0..is_point.len()).filter(|&point| is_point[point] == pass) {
-                match ray(point).map(|index| &mut assigned.point_of[index]) {
+                let index = ray(point);
+                match index.map(|index| &mut assigned.point_of[index]) {
                     Some(place @ None) => *place = Some(point),
-                    _ if pass => assigned.strays.push(point),
+                    _ if pass => {
+                        index.into_iter().for_each(|index| *assigned.crowded.entry(index).or_default() += 1);
+                        assigned.strays.push(point);
+                    }
                     _ => {}
                 }
             }
@@ -176,7 +185,7 @@ impl Asked<'_> {
             return self.collected(is_point, beam, by);
         }
         let numbers = number_of_return(cloud);
-        let mut assigned = Assigned { point_of: vec![None; self.rays.len()], strays: Vec::new(), by };
+        let mut assigned = Assigned::none(self.rays.len(), by);
         let mut others = Vec::new();
         for point in (0..is_point.len()).filter(|&point| is_point[point]) {
             let Some(beam) = beam(point) else {
@@ -200,7 +209,10 @@ impl Asked<'_> {
             let free = self.places_of(beam).find(|&place| assigned.point_of[place].is_none());
             match free.map(|place| &mut assigned.point_of[place]) {
                 Some(place) => *place = Some(point),
-                None if is_point[point] => assigned.strays.push(point),
+                None if is_point[point] => {
+                    *assigned.crowded.entry(beam).or_default() += 1;
+                    assigned.strays.push(point);
+                }
                 None => {}
             }
         }
@@ -219,6 +231,11 @@ pub(super) fn number_of_return(cloud: &Cloud) -> Option<&CloudColumn> {
 }
 
 impl Assigned {
+    /// So many rays without a point.
+    fn none(rays: usize, by: &'static str) -> Self {
+        Self { point_of: vec![None; rays], strays: Vec::new(), crowded: HashMap::new(), by }
+    }
+
     /// Whether so few points belong to no ray that the others can be judged.
     pub(super) fn is_clear(&self, points: usize) -> bool {
         self.strays.len() * 100 <= points * MAX_STRAY_PERCENT
@@ -229,6 +246,28 @@ impl Assigned {
         let otherwise = self.point_of.iter().zip(&other.point_of).filter(|(a, b)| a.is_some() && a != b);
         otherwise.count() * 100 <= points * MAX_STRAY_PERCENT
     }
+}
+
+/// Why points cannot be laid on rays, where nearly each of them has a ray: they are too many for their rays. `None`: that is not why.
+pub(super) fn too_many(assigned: &Assigned, points: usize, places: usize) -> Option<Fault> {
+    let crowding: usize = assigned.crowded.values().sum();
+    let of_no_ray = assigned.strays.len() - crowding;
+    let most = places + assigned.crowded.values().max()?;
+    if of_no_ray * 100 > points * MAX_STRAY_PERCENT || most > MAX_RETURNS {
+        return None;
+    }
+    let (of, expected) = match places {
+        1 => ("ray that has a point", "one point for each ray: this pack asks for one return".to_string()),
+        _ => (
+            "beam that has its points",
+            format!("at most {places} points for each beam: this pack asks for so many returns"),
+        ),
+    };
+    let found = format!(
+        "{crowding} of {points} points are of a {of} already, up to {most} points for one, {}",
+        assigned.by
+    );
+    Some(Fault::new("points", found, expected))
 }
 
 /// Why points cannot be laid on rays. `of_fields` is what their fields have, in words.

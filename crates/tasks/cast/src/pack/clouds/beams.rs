@@ -1,5 +1,6 @@
 //! Beams with a width: the returns that a cloud should have, a ray for each, and where rounding may change them.
 
+use rayon::prelude::*;
 use raypencil_files::RayArray;
 use raypencil_referee::ExactCast;
 use raypencil_scene::pattern::{EchoLight, Keep, Returns};
@@ -250,6 +251,17 @@ impl Beams {
             }
         }
         asked
+    }
+
+    /// Those of these places whose beams have the same returns whatever rounding does.
+    pub(in crate::pack) fn closed(
+        &self,
+        places: &[usize],
+        ground: (&ExactCast<'_>, &Triangles, Sides),
+        precision: Precision,
+    ) -> Vec<usize> {
+        let is_closed = |place: &&usize| !self.is_open(*place / self.places(), ground, precision);
+        places.par_iter().filter(is_closed).copied().collect()
     }
 
     /// Whether rounding may change the returns of a beam: the answer to one of its rays, a gap between two of them, or the order of

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use glam::DVec3;
 use raypencil_files::FileError;
-use raypencil_mesh_io::{Cloud, CloudStorage};
+use raypencil_mesh_io::{Cloud, CloudColumn, CloudStorage};
 use raypencil_scene::CastRay;
 
-use super::assign::{Asked, Assigned, BY_DIRECTION, Order, number_of_return, unclear};
+use super::assign::{Asked, Assigned, BY_DIRECTION, Order, number_of_return, too_many, unclear};
 use super::beams::Beams;
 use super::file;
 use super::fit::rounded;
@@ -40,6 +40,26 @@ pub struct CloudFacts {
     pub wrong_keys: Vec<usize>,
     /// What explains them.
     pub(in crate::pack) keys_why: Option<String>,
+    /// Number of points whose number of a return was compared with that of their ray.
+    pub(in crate::pack) numbered: usize,
+    /// Indices of the rays whose points have another number of a return than that of theirs.
+    pub wrong_numbers: Vec<usize>,
+    /// What explains them.
+    pub(in crate::pack) numbers_why: Option<String>,
+}
+
+impl CloudFacts {
+    /// What explains all that the fields say otherwise, in words.
+    pub(in crate::pack) fn why(&self) -> Option<String> {
+        let of = |wrong: &[usize], why: &Option<String>| match wrong {
+            [] => Some(None),
+            _ => why.clone().map(Some),
+        };
+        let keys = of(&self.wrong_keys, &self.keys_why)?;
+        let numbers = of(&self.wrong_numbers, &self.numbers_why)?;
+        let words: Vec<String> = [keys, numbers].into_iter().flatten().collect();
+        (!words.is_empty()).then(|| words.join(", and "))
+    }
 }
 
 /// A cloud on the rays of a pack.
@@ -117,11 +137,16 @@ pub(in crate::pack) fn read_cloud_of<'a>(
     let order = found.as_ref().and_then(|(_, order)| *order);
     let said = Said { asked: &asked, cloud: &cloud, is_point: &is_point, usual: Keys::of(usual) };
     let exchanged = || asked.exchanged(&cloud, (&points, &is_point), (frame, Keys::of(usual)));
-    let (found, keys) = match found.map(|(found, _)| found).filter(|found| found.is_clear(real)) {
-        Some(found) => (found, Keys::of(usual)),
+    let (found, keys) = match found.map(|(found, _)| found) {
+        Some(found) if found.is_clear(real) => (found, Keys::of(usual)),
         // Wrong times or numbers still tell the rays.
-        None => said.otherwise(&exchanged, real).ok_or_else(|| {
+        laid => said.otherwise(&exchanged, real).ok_or_else(|| {
+            let of_keys = asked.by_keys(&cloud, &is_point, Keys::of(usual));
             let only = asked.only_time(&cloud, &is_point);
+            let known = of_keys.as_ref().filter(|_| only.is_none()).or(laid.as_ref());
+            if let Some(too_many) = known.and_then(|known| too_many(known, real, places)) {
+                return fault(too_many);
+            }
             let of_fields = only.map_or(String::new(), |time| format!("; all have the same time, {time}"));
             fault(unclear(strays, real, &of_fields))
         })?,
@@ -183,6 +208,10 @@ pub(in crate::pack) fn read_cloud_of<'a>(
     let of_usual = asked.by_keys(&cloud, &is_point, Keys::of(usual));
     let wrong_keys = of_usual.as_ref().map_or_else(Vec::new, |of_usual| said.unlike(&found, of_usual));
     let keys_why = if wrong_keys.is_empty() { None } else { said.why(&found, &exchanged) };
+    let (numbered, wrong_numbers, numbers_why) = match number_of_return(&cloud) {
+        Some(column) => wrong_numbers(&found, numbers, (column, &is_point)),
+        None => (0, Vec::new(), None),
+    };
     let least_number = number_of_return(&cloud).and_then(|column| {
         let numbers = (0..is_point.len()).filter(|&point| is_point[point]).map(|point| column.values[point]);
         numbers.min_by(f64::total_cmp)
@@ -190,6 +219,9 @@ pub(in crate::pack) fn read_cloud_of<'a>(
     let facts = CloudFacts {
         wrong_keys,
         keys_why,
+        numbered,
+        wrong_numbers,
+        numbers_why,
         frame,
         source,
         points: real,
@@ -212,6 +244,36 @@ pub(in crate::pack) fn read_cloud_of<'a>(
         directed,
         ranges,
     })
+}
+
+/// How many points have a number of a return that is known of their ray, the rays of which it is another, and what explains all of these. `numbers` are those of the rays; 0: a
+/// ray of no return, or not known.
+fn wrong_numbers(
+    found: &Assigned,
+    numbers: &[u32],
+    (column, is_point): (&CloudColumn, &[bool]),
+) -> (usize, Vec<usize>, Option<String>) {
+    let told = numbers.iter().zip(&found.point_of).enumerate();
+    let pairs = told.filter_map(|(ray, (&number, point))| {
+        let point = point.filter(|&point| is_point[point] && number != 0)?;
+        Some((ray, column.values[point], f64::from(number)))
+    });
+    let pairs: Vec<(usize, f64, f64)> = pairs.collect();
+    let wrong: Vec<usize> =
+        pairs.iter().filter(|(_, stated, right)| stated != right).map(|(ray, ..)| *ray).collect();
+    let all = |is: &dyn Fn(f64, f64) -> bool| pairs.iter().all(|(_, stated, right)| is(*stated, *right));
+    let why = match pairs.first() {
+        None => None,
+        Some(_) if wrong.is_empty() => None,
+        Some(&(_, first, _)) if pairs.len() > 1 && all(&|stated, _| stated == first) => Some(format!(
+            "all points have the number of return {first}: it counts the returns of a footprint, the nearest is 1"
+        )),
+        Some(_) if all(&|stated, right| stated == right - 1.0) => {
+            Some("the numbers of returns count from 0: the nearest is 1".to_string())
+        }
+        Some(_) => None,
+    };
+    (pairs.len(), wrong, why)
 }
 
 /// What the fields of a cloud say of its points.
@@ -243,7 +305,11 @@ impl Said<'_> {
             std::iter::once(keys).chain(self.late(keys))
         });
         let of_exchange = || exchanged().map(|pair| Keys { exchanged: Some(pair), ..self.usual });
-        let all = self.late(self.usual).chain(of_clocks).chain(std::iter::once_with(of_exchange).flatten());
+        let all = self
+            .begun()
+            .chain(self.late(self.usual))
+            .chain(of_clocks)
+            .chain(std::iter::once_with(of_exchange).flatten());
         all.filter_map(|keys| Some((self.by(keys)?, keys))).find(|(found, _)| found.is_clear(points))
     }
 
