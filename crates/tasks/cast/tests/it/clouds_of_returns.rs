@@ -257,8 +257,21 @@ fn returns_in_another_order_and_repeated_ones_are_told() {
     let again: Vec<Point> = (0..right.len())
         .map(|k| if right[k].place.is_finite() || k % 2 == 0 { right[k] } else { right[k - 1] })
         .collect();
-    let words = "if a beam with fewer returns has one of them again: its other places are empty";
-    trial.expect_why(&again, words);
+    let words = "a beam with fewer returns has one of them again: its other places are empty";
+    trial.expect_why(&again, &format!("if {words}"));
+    // Two beams that have one again, among many that have not, follow no such rule.
+    let fewer: Vec<usize> = (0..right.len())
+        .filter(|k| k % 2 == 1 && right[*k].place.is_nan() && right[k - 1].place.is_finite())
+        .collect();
+    assert!(fewer.len() > 100, "{}", fewer.len());
+    let mut two = right.clone();
+    for k in &fewer[7..9] {
+        two[*k] = right[k - 1];
+    }
+    for checked in trial.judge_all(&two) {
+        assert_eq!(checked.comparison.counts().wrong, 2);
+        assert!(checked.why.is_none_or(|why| !why.contains(words)));
+    }
 }
 
 #[test]

@@ -94,21 +94,19 @@ pub(super) fn of_returns<'a>(list: &mut List<'a>, case: &'a CloudCase<'a>, beams
                 }
             });
         }
-        list.add(
-            "a beam with fewer returns has one of them again: its other places are empty",
-            true,
-            move |trial| {
+        // A rule holds for all beams that have fewer.
+        let places = || 0..case.part.raw.len();
+        if places().filter_map(|place| is_again(case, beams, place)).all(|is_again| is_again) {
+            let words = "a beam with fewer returns has one of them again: its other places are empty";
+            list.add(words, true, move |trial| {
                 let Some(cloud) = &mut trial.cloud else { return };
                 for (k, &place) in trial.indices.iter().enumerate() {
-                    let (told, at) = beams.told_of_beam(place);
-                    let first = place - at;
-                    let is_again = |other: usize| case.part.raw[other] == case.part.raw[place];
-                    if at >= told && (first..first + told).any(is_again) {
+                    if is_again(case, beams, place) == Some(true) {
                         cloud.raw[k] = DVec3::NAN;
                     }
                 }
-            },
-        );
+            });
+        }
     }
     for other in beams.others() {
         list.add(other.words.as_str(), true, move |trial| {
@@ -137,6 +135,14 @@ pub(super) fn of_returns<'a>(list: &mut List<'a>, case: &'a CloudCase<'a>, beams
             beams.told(place).map_or(length, |told| length * (told.range / told.mean_range))
         });
     });
+}
+
+/// Whether a place has the point of a return of its beam again; `None`: it has a return of its own, or its beam has none.
+fn is_again(case: &CloudCase<'_>, beams: &Beams, place: usize) -> Option<bool> {
+    let (told, at) = beams.told_of_beam(place);
+    let first = place - at;
+    let same = |other: usize| case.part.raw[other] == case.part.raw[place];
+    (told > 0 && at >= told).then(|| (first..first + told).any(same))
 }
 
 /// Two channels whose points lie on each other's elevation.
