@@ -61,11 +61,13 @@ pub fn read_candidate(
         let (numbers, errors) = reader.numbers(name, &[3])?;
         Ok((numbers.map(|numbers| numbers.chunks_exact(3).map(DVec3::from_slice).collect()), errors))
     };
+    // Single precision rounds 4294967295 to 4294967296, which is no face either.
+    let none = [-1.0, f64::from(u32::MAX), f64::from(u32::MAX as f32)];
     let face = match conventions.ignores_faces {
         true => None,
         false => reader.numbers("face", &[])?.0.map(|numbers| {
             let face = |(cell, number): (usize, f64)| match number {
-                number if is_miss(number) || number == -1.0 || number == f64::from(u32::MAX) => Ok(None),
+                number if is_miss(number) || none.contains(&number) => Ok(None),
                 number if number.fract() == 0.0 && (0.0..f64::from(u32::MAX)).contains(&number) => {
                     Ok(Some(FaceId(number as u32)))
                 }

@@ -8,6 +8,7 @@ use raypencil_referee::ExactCast;
 use raypencil_scene::{CastRay, Precision, Progress, Sides, Triangles};
 
 use super::PACK_NAME;
+use super::arrays::{axes, constants, orders};
 use super::candidate::{CandidateConventions, read_candidate};
 use super::clouds::{BeamQuestion, CloudCase, CloudFacts, is_cloud, of_cloud, read_cloud_of};
 use super::explain::explain;
@@ -99,7 +100,7 @@ pub fn check_stated_rays(
     precision: Precision,
     progress: &dyn Progress,
 ) -> RayPackChecked {
-    let judged = judge(ground, &rays.rays, (&stated, None), precision, progress);
+    let judged = judge(ground, &rays, (&stated, None), precision, progress);
     judged.checked(asked_by, (rays, ground.sides), (name, stated), (None, None))
 }
 
@@ -189,7 +190,7 @@ pub fn check_ray_pack(
         Some(excused) => RayArray { shape: asked.shape.clone(), rays: excused.clone() },
         None => asked.clone(),
     };
-    let judged = judge(ground, &asked.rays, (&stated, case), precision, progress);
+    let judged = judge(ground, &asked, (&stated, case), precision, progress);
     let (rays, scan) = match question {
         Some(question) => (asked, Some(question.scan)),
         None => {
@@ -278,7 +279,7 @@ impl Judged {
 /// Judges stated answers, and those of a cloud with what the cloud says beside them.
 fn judge(
     CastGround { mesh, exact, sides }: CastGround<'_>,
-    rays: &[CastRay],
+    RayArray { shape, rays }: &RayArray,
     (stated, case): (&Stated, Option<CloudCase<'_>>),
     precision: Precision,
     progress: &dyn Progress,
@@ -290,8 +291,16 @@ fn judge(
         progress.stage("looking for a mistake that explains the wrong rays");
         let of_cloud = case.as_ref().map(|case| of_cloud(case, exact, sides));
         let stated = (stated, of_cloud.as_ref());
-        let lengths = |trial: &Trial| lengths(trial, exact, sides);
-        explain(exact, mesh, (rays, sides), stated, &lengths, precision, &wrong)
+        let numbers = |trial: &Trial| {
+            let mut found = lengths(trial, exact, sides);
+            found.extend(constants(trial, exact, sides));
+            found
+        };
+        let alone = match case {
+            None => orders(stated.0, shape).into_iter().chain(axes(stated.0)).collect(),
+            Some(_) => Vec::new(),
+        };
+        explain(exact, mesh, (rays, sides), stated, (&numbers, &alone), precision, &wrong)
     });
     let answers = cast_with(exact, rays, sides, Questions::default(), progress);
     let cloud = case.map(|case| case.facts);

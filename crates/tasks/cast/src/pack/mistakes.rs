@@ -102,7 +102,7 @@ fn renumber(trial: &mut Trial, by: i64) {
 }
 
 /// Puts another number that is not finite in the place of one that stands for no hit.
-fn misses_at(trial: &mut Trial, number: f64, other: f64) {
+pub(super) fn misses_at(trial: &mut Trial, number: f64, other: f64) {
     let miss = |_: usize, distance: &mut f64| {
         if *distance == number {
             *distance = other;
@@ -261,6 +261,26 @@ pub(super) const OF_RULES: &[Mistake] = &[
             for ray in &mut trial.rays {
                 let length = ray.direction.length();
                 (ray.t_min, ray.t_max) = (ray.t_min / length, ray.t_max / length);
+            }
+        },
+    },
+];
+
+/// What is taken for the numbers of a ray.
+pub(super) const OF_ARGUMENTS: &[Mistake] = &[
+    Mistake {
+        words: "the direction of a ray is taken for a point that it goes to: rays are o + t d",
+        undo: |trial| {
+            for ray in trial.rays.iter_mut().filter(|ray| ray.direction != ray.origin) {
+                ray.direction -= ray.origin;
+            }
+        },
+    },
+    Mistake {
+        words: "the origin and the direction of a ray are taken for each other: the first three numbers are the origin",
+        undo: |trial| {
+            for ray in trial.rays.iter_mut().filter(|ray| ray.origin != DVec3::ZERO) {
+                (ray.origin, ray.direction) = (ray.direction, ray.origin);
             }
         },
     },

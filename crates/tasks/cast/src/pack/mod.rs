@@ -8,12 +8,14 @@
 //! clouds/     another program's point cloud
 //! lengths     a factor or a length by which arrays are off
 //! trial       a question and its stated answers, as mistakes change them
+//! arrays      orders, axes and constants for no hit that an array may have
 //! mistakes    what a candidate may do otherwise, in words, and what undoes it
 //! explain     which of these, or which two, explain why a candidate is wrong
 //! check       a candidate against a pack
 //! report      the check in the form of every check
 //! ```
 
+mod arrays;
 mod candidate;
 mod check;
 mod clouds;

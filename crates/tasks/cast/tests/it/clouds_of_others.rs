@@ -703,6 +703,26 @@ fn fields_of_other_drivers_are_read_as_they_mean_them() {
 }
 
 #[test]
+fn channels_that_are_counted_from_another_number_are_told() {
+    for mounting in [still(), bend()] {
+        let trial = Trial::new(&head(), &mounting);
+        let right = points(&trial.set, CloudFrame::Mesh);
+        for from in [1, 100] {
+            let words = format!("if the numbers of channels count from {from}: they count from 0");
+            let counted: Vec<Point> =
+                right.iter().map(|one| Point { ring: one.ring + from, ..*one }).collect();
+            for checked in [
+                trial.judge_dense(&counted, Fields::Keys, CloudFrame::Mesh),
+                trial.judge(&counted, Fields::Keys, CloudFrame::Mesh),
+            ] {
+                expect(&checked, &words);
+                assert_eq!(checked.comparison.counts().wrong, 0);
+            }
+        }
+    }
+}
+
+#[test]
 fn a_doubled_cloud_is_told_as_such() {
     let trial = Trial::new(&head(), &bend());
     let dense: Vec<Point> =

@@ -116,6 +116,19 @@ impl Folders {
         self
     }
 
+    /// Lays the answers to the 200 rays otherwise: `from` gives the ray whose answer is in the place of another.
+    fn lay(self, from: impl Fn(usize) -> usize) -> Self {
+        for name in [&VALUES[..], &["face", "side"]].concat() {
+            let path = self.candidate.path().join(format!("{name}.npy"));
+            let array = read_npy_numbers(&path, &Default::default()).unwrap();
+            let parts = array.values.len() / 200;
+            let values: Vec<f64> =
+                (0..array.values.len()).map(|k| array.values[from(k / parts) * parts + k % parts]).collect();
+            write_npy_numbers(&path, &array.shape, &values).unwrap();
+        }
+        self
+    }
+
     fn without(self, names: &[&str]) -> Self {
         for name in names {
             std::fs::remove_file(self.candidate.path().join(format!("{name}.npy"))).unwrap();
@@ -199,6 +212,79 @@ fn mistakes_are_found_in_arrays_of_fewer_digits() {
     length.expect_why(&["normals are not 1 long"]);
     let turned = Folders::right().change("cos_incidence", |_, cos| libm::acos(cos).to_degrees());
     turned.store(false, 0, &VALUES).expect_why(&["angles in degrees"]);
+}
+
+#[test]
+fn answers_in_another_order_are_named() {
+    // 10 rows of 20.
+    let orders: [(fn(usize) -> usize, &str); 4] = [
+        (|k| (9 - k / 20) * 20 + k % 20, "if rows of answers run from the last to the first"),
+        (|k| k / 20 * 20 + 19 - k % 20, "if the answers of each row run from the last to the first"),
+        (|k| 199 - k, "if all answers run from the last ray to the first"),
+        // In memory the first index runs fastest: place k has the answer of row k % 10 and column k / 10.
+        (|k| k % 10 * 20 + k / 10, "if answers are in column order (F): the last dimension runs fastest (C)"),
+    ];
+    for (from, words) in orders {
+        Folders::right().lay(from).expect_why(&["100.0000 %", words]);
+    }
+    // One answer on another ray is no order.
+    let checked = Folders::right().lay(|k| if k == 57 { 58 } else { k }).check();
+    assert!(!checked.passes() && checked.why.is_none(), "{:?}", checked.why);
+}
+
+#[test]
+fn all_axes_are_named() {
+    let turned = |folders: Folders, name: &str, order: [usize; 3], signs: [f64; 3]| {
+        let right = folders.of(name);
+        folders.change(name, |k, _| signs[k % 3] * right[k / 3 * 3 + order[k % 3]])
+    };
+    let both = |order, signs| {
+        let points = turned(Folders::right(), "point", order, signs);
+        turned(points, "normal", order, signs)
+    };
+    both([2, 0, 1], [1.0; 3]).expect_why(&["if points and normals are (z, x, y) of the mesh's (x, y, z)"]);
+    both([1, 0, 2], [-1.0, 1.0, -1.0])
+        .expect_why(&["if points and normals are (-y, x, -z) of the mesh's (x, y, z)"]);
+    turned(Folders::right(), "point", [0, 1, 2], [1.0, 1.0, -1.0])
+        .expect_why(&["if points are (x, y, -z) of the mesh's (x, y, z)"]);
+    turned(Folders::right(), "normal", [0, 2, 1], [1.0, -1.0, 1.0])
+        .expect_why(&["if normals are (x, -z, y) of the mesh's (x, y, z)"]);
+    let points = turned(Folders::right().without(&["normal"]), "point", [2, 1, 0], [1.0, 1.0, 1.0]);
+    points.expect_why(&["if points are (z, y, x) of the mesh's (x, y, z)"]);
+}
+
+#[test]
+fn constants_for_misses_are_named() {
+    let constant = |number: f64| {
+        let of = move |_: usize, length: f64| if length.is_finite() { length } else { number };
+        Folders::right().change("t", of).change("range", of).without(&["face"])
+    };
+    constant(9999.5).expect_why(&["100.0000 %", "if 9999.5 means no hit: declare --miss 9999.5"]);
+    constant(1e30).expect_why(&["if 1e30 means no hit: declare --miss 1e30"]);
+    let declared = CandidateConventions { miss: Some(9999.5), ..CandidateConventions::default() };
+    assert!(constant(9999.5).check_by(Precision::F64, declared).passes());
+    let none = f64::from(u32::MAX);
+    let of_faces =
+        |to: f64| Folders::right().change("face", move |_, face| if face == none { to } else { face });
+    of_faces(12.0).expect_why(&["if 12 means no hit: declare --miss 12"]);
+    // What differs from miss to miss is no constant.
+    let checked = Folders::right()
+        .change("t", |k, t| if t.is_finite() { t } else { 50.0 + (k % 3) as f64 })
+        .without(&["face"])
+        .check();
+    assert!(!checked.passes() && checked.why.is_none(), "{:?}", checked.why);
+    // 4294967295 in single precision.
+    assert!(Folders::right().store(false, 0, &["face"]).check().passes());
+}
+
+#[test]
+fn exchanged_arguments_are_named() {
+    let to_point = Folders::new(Sides::Both, Sides::Both, |ray| ray.direction -= ray.origin);
+    to_point.expect_why(&["100.0000 %", "if the direction of a ray is taken for a point that it goes to"]);
+    let exchanged = Folders::new(Sides::Both, Sides::Both, |ray| {
+        (ray.origin, ray.direction) = (ray.direction, ray.origin);
+    });
+    exchanged.expect_why(&["if the origin and the direction of a ray are taken for each other"]);
 }
 
 /// What a single-precision program has of a number.

@@ -47,6 +47,8 @@ impl Clock {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Keys {
     pub(super) ring: Ring,
+    /// The number of the first channel.
+    pub(super) from: i64,
     /// Two channels, in the order of the manual, each with the number of the other.
     pub(super) exchanged: Option<[usize; 2]>,
     pub(super) clock: Clock,
@@ -55,7 +57,7 @@ pub(super) struct Keys {
 impl Keys {
     /// Numbers of the ring, and right times.
     pub(super) fn of(ring: Ring) -> Self {
-        Self { ring, exchanged: None, clock: Clock::RIGHT }
+        Self { ring, from: 0, exchanged: None, clock: Clock::RIGHT }
     }
 }
 
@@ -126,7 +128,7 @@ impl Asked<'_> {
             }
         }
         let beam = |point: usize| {
-            let key = of_channel.map_or(0.0, |column| column.values[point]);
+            let key = of_channel.map_or(0.0, |column| column.values[point] - keys.from as f64);
             let channel = *channel_of.get((key.fract() == 0.0 && key >= 0.0).then_some(key as usize)?)?;
             let time = time.seconds(point, keys.clock);
             let list = &fired[channel];
@@ -196,6 +198,26 @@ impl Asked<'_> {
         channel_of
     }
 
+    /// Numbers from which channels may be counted in place of 0, the nearest to 0 first: with each of them the numbers of all points are
+    /// those of channels.
+    pub(super) fn other_beginnings(&self, cloud: &Cloud, is_point: &[bool]) -> Vec<i64> {
+        let (Some((Some(column), _)), Some(channels)) = (self.channel_field(cloud), self.channels()) else {
+            return Vec::new();
+        };
+        let numbers =
+            || (0..is_point.len()).filter(|&point| is_point[point]).map(|point| column.values[point]);
+        let (least, most) =
+            (numbers().fold(f64::INFINITY, f64::min), numbers().fold(f64::NEG_INFINITY, f64::max));
+        // No field of a ring or channel has more than 16 bits.
+        if !(least..=most).contains(&least) || least.abs().max(most.abs()) > f64::from(u16::MAX) {
+            return Vec::new();
+        }
+        let first = most as i64 - (channels as i64 - 1);
+        let mut found: Vec<i64> = (first..=least as i64).filter(|from| *from != 0).collect();
+        found.sort_by_key(|from| from.abs());
+        found
+    }
+
     /// How much too late the times of a cloud may be, seconds, by a clock that is right otherwise: those by which its first point has
     /// the time of the first ray, or its last that of the last.
     pub(super) fn lateness(&self, cloud: &Cloud, is_point: &[bool], clock: Clock) -> Vec<f64> {
@@ -256,7 +278,7 @@ impl Asked<'_> {
         let mut votes = Votes::new(scan, self.channels()?, &|channel| self.rays[channel * self.places])?;
         let every = points.len().div_ceil(MAX_MEASURED).max(1);
         for point in (0..points.len()).step_by(every).filter(|&point| is_point[point]) {
-            let key = column.values[point];
+            let key = column.values[point] - keys.from as f64;
             let is_whole = key.fract() == 0.0 && key >= 0.0;
             let Some(&channel) = channel_of.get(key as usize).filter(|_| is_whole) else { continue };
             let Some(pose) = scan.mounting.at(time.seconds(point, keys.clock)) else { continue };

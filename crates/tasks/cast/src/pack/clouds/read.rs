@@ -298,6 +298,12 @@ impl Said<'_> {
         lateness.into_iter().map(move |late_s| Keys { clock: Clock { late_s, ..keys.clock }, ..keys })
     }
 
+    /// Keys whose channels are counted from another number than 0.
+    fn begun(&self) -> impl Iterator<Item = Keys> {
+        let all = self.asked.other_beginnings(self.cloud, self.is_point);
+        all.into_iter().map(|from| Keys { from, ..self.usual })
+    }
+
     /// The points by fields that are wrong in a way that still tells their rays.
     fn otherwise(&self, exchanged: Exchanged<'_>, points: usize) -> Option<(Assigned, Keys)> {
         let of_clocks = self.asked.other_clocks(self.cloud).into_iter().flat_map(|(_, clock)| {
@@ -357,7 +363,12 @@ impl Said<'_> {
             let time = self.asked.only_time(self.cloud, self.is_point)?;
             Some(format!("all points have the same time, {time}: each has that of its own firing"))
         };
+        let of_beginning = || {
+            let from = self.begun().find(|keys| explains(*keys))?.from;
+            Some(format!("the numbers of channels count from {from}: they count from 0"))
+        };
         of_ring()
+            .or_else(of_beginning)
             .or_else(|| of_lateness(self.usual))
             .or_else(of_one_time)
             .or_else(of_clock)
