@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use raypencil_cast::{CandidateConventions, CloudConventions, RayPackChecked, check_ray_pack, is_ray_pack};
-use raypencil_files::{FileError, FolderError};
+use raypencil_files::{Fault, FileError, FolderError};
 use raypencil_pack::{
-    CheckError, Checked, Declarations, InputChecked, PackForm, Verification, check_input, check_pack_by,
-    is_input_pack, write_document,
+    CheckError, Checked, Declarations, InputChecked, PackForm, Provenance, ProvenanceError, Verification,
+    check_input, check_pack_by, is_input_pack, write_document,
 };
 use raypencil_report::Document;
 use raypencil_scene::Progress;
@@ -40,10 +40,10 @@ pub enum CheckedPack {
     Triangles(InputChecked),
 }
 
-/// Checks a candidate against a pack of any form. `cloud` is declared of a point cloud, which a pack of rays takes too.
+/// Checks a candidate against a pack of any form. Its `candidate.json` may declare what `declarations` does not. `cloud` is declared of a point cloud, which a pack of rays takes too.
 ///
 /// # Errors
-/// As `check_pack_by`, `check_ray_pack` and `check_input`.
+/// As `check_pack_by`, `check_ray_pack` and `check_input`; a note of answers to rays that cannot be read, or speaks of channels.
 pub fn check_any_pack(
     pack: &Path,
     candidate: &Path,
@@ -59,8 +59,9 @@ pub fn check_any_pack(
     Ok(match pack_form(pack) {
         PackForm::Triangles => CheckedPack::Triangles(check_input(pack, candidate)?),
         PackForm::Rays => {
-            let of_rays = conventions(declarations);
-            let checked = check_ray_pack(pack, candidate, declarations.precision(), of_rays, progress)?;
+            let declared = declarations.clone().with_note(note_of_rays(candidate)?.as_ref());
+            let of_rays = conventions(&declared);
+            let checked = check_ray_pack(pack, candidate, declared.precision(), of_rays, progress)?;
             CheckedPack::Rays(Box::new(checked))
         }
         PackForm::Sensors => {
@@ -71,6 +72,22 @@ pub fn check_any_pack(
             CheckedPack::Sensors { checked: Box::new(checked), sets }
         }
     })
+}
+
+/// The note of a folder of answers to a pack of rays; a cloud has none. What it says of channels of other names has no meaning there.
+fn note_of_rays(candidate: &Path) -> Result<Option<Provenance>, CheckError> {
+    let note = Provenance::read(candidate).map_err(ProvenanceError::from)?;
+    let of_channels = |note: &Provenance| {
+        let scale = note.scale.map(|scale| ("scale", scale.to_string()));
+        let channel = note.channels.0.first().map(|(map, channel)| ("channels", format!("{map}: {channel}")));
+        scale.or(channel)
+    };
+    if let Some((place, found)) = note.as_ref().and_then(of_channels) {
+        let expected = "no channels and no scale: answers to a pack of rays are NPY files of fixed names";
+        let fault = Fault::new(place, found, expected).in_file(&candidate.join("candidate.json"));
+        return Err(ProvenanceError::from(FileError::Recording(fault)).into());
+    }
+    Ok(note)
 }
 
 impl CheckedPack {

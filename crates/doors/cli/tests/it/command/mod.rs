@@ -17,6 +17,7 @@ mod manners;
 mod messages;
 mod other_programs;
 mod packs;
+mod ray_packs;
 mod ray_sets;
 mod scene;
 mod sweep;
