@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use raypencil_cast::{CandidateConventions, CloudConventions, RayPackChecked, check_ray_pack, is_ray_pack};
+use raypencil_cast::{
+    CandidateConventions, CloudConventions, RayPackChecked, check_ray_pack, is_cloud, is_ray_pack,
+};
 use raypencil_files::{Fault, FileError, FolderError};
 use raypencil_pack::{
     CheckError, Checked, Declarations, InputChecked, PackForm, Provenance, ProvenanceError, Verification,
@@ -56,7 +58,12 @@ pub fn check_any_pack(
         ignores_faces: declared.ignores_faces,
         cloud,
     };
-    Ok(match pack_form(pack) {
+    let form = pack_form(pack);
+    // A pack that is not there has its own words.
+    if pack.exists() {
+        refuse_other_kinds(form, candidate)?;
+    }
+    Ok(match form {
         PackForm::Triangles => CheckedPack::Triangles(check_input(pack, candidate)?),
         PackForm::Rays => {
             let declared = declarations.clone().with_note(note_of_rays(candidate)?.as_ref());
@@ -72,6 +79,33 @@ pub fn check_any_pack(
             CheckedPack::Sensors { checked: Box::new(checked), sets }
         }
     })
+}
+
+/// Refuses a candidate that is of no use for a pack of this form, and says what it is.
+fn refuse_other_kinds(form: PackForm, candidate: &Path) -> Result<(), CheckError> {
+    let is_list = candidate.file_name().is_some_and(|name| name == "raypack.json") && candidate.is_file();
+    let found = match form {
+        PackForm::Rays if is_list => "the list of a pack of rays",
+        PackForm::Rays if candidate.join("manifest.json").is_file() && !is_ray_pack(candidate) => {
+            "a pack of a scene, or its input"
+        }
+        PackForm::Rays => return Ok(()),
+        _ if is_cloud(candidate) && candidate.is_file() => "a point cloud",
+        _ if is_list || is_ray_pack(candidate) => "a pack of rays",
+        _ => return Ok(()),
+    };
+    let expected = match form {
+        PackForm::Rays => {
+            "a folder with face.npy, t.npy or range.npy, or a point cloud: this pack asks for rays"
+        }
+        PackForm::Sensors => {
+            "maps of its sensors: this pack asks for those of a scene. Answers to rays and point clouds are held to a pack of rays: \
+             of `pack MESH --rays RAYS`, or rays/NAME in a pack whose scene has sets of rays"
+        }
+        PackForm::Triangles => "triangles.npy: this pack asks for triangles",
+    };
+    let fault = Fault::new("candidate", found, expected).in_file(candidate);
+    Err(FileError::Recording(fault).into())
 }
 
 /// The note of a folder of answers to a pack of rays; a cloud has none. What it says of channels of other names has no meaning there.

@@ -36,12 +36,13 @@ pub struct CandidateConventions<'a> {
 /// and `cos_incidence.npy`, in any type, of the rays' shape or flat.
 ///
 /// # Errors
-/// An array that cannot be read or has another shape; a folder that does not say which rays hit.
+/// An array that cannot be read or has another shape; a folder that does not say which rays hit, or that is none.
 pub fn read_candidate(
     folder: &Path,
     shape: &[u64],
     conventions: CandidateConventions<'_>,
 ) -> Result<Stated, FileError> {
+    refuse_file(folder)?;
     let reader = Reader { folder, shape, count: shape.iter().product() };
     let is_miss = |number: f64| !number.is_finite() || Some(number) == conventions.miss;
     let distance = |name: &str| -> Result<Stored<f64>, FileError> {
@@ -123,6 +124,20 @@ pub fn read_candidate(
         return Err(FileError::Array(fault.in_file(folder)));
     }
     Ok(stated)
+}
+
+/// Refuses a file in place of a folder, and says what it is.
+fn refuse_file(path: &Path) -> Result<(), FileError> {
+    if std::fs::metadata(path).map_err(|error| FileError::io(path, "read", error))?.is_dir() {
+        return Ok(());
+    }
+    let found = match path.extension().map(|ending| ending.to_string_lossy().to_lowercase()) {
+        Some(ending) if ending == "npy" => "one array".to_string(),
+        Some(ending) => format!("a file that ends in .{ending}"),
+        None => "a file without an ending".to_string(),
+    };
+    let expected = "a folder with face.npy, t.npy or range.npy, or a point cloud: .pcd, .ply or .mcap";
+    Err(FileError::Array(Fault::new("candidate", found, expected).in_file(path)))
 }
 
 /// Values, and how far storing may have moved each of them.

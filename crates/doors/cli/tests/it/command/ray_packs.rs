@@ -61,3 +61,58 @@ fn the_note_of_answers_to_rays_is_followed() {
         assert_trouble(&raypencil(at, &check), &["candidate.json", words]);
     }
 }
+
+#[test]
+fn what_is_no_answer_to_rays_is_told_by_its_kind() {
+    let folder = folder();
+    let at = folder.path();
+    fs::copy(at.join("rays.csv"), at.join("cloud.xyz")).expect("a file");
+    fs::copy(at.join("answers/t.npy"), at.join("t.npy")).expect("a file");
+    for (candidate, found) in [
+        ("rays.csv", "rays.csv: candidate: a file that ends in .csv; expected a folder with face.npy, t.npy"),
+        ("cloud.xyz", "cloud.xyz: candidate: a file that ends in .xyz; expected a folder"),
+        (
+            "t.npy",
+            "t.npy: candidate: one array; expected a folder with face.npy, t.npy or range.npy, or a point cloud",
+        ),
+        ("pack/raypack.json", "candidate: the list of a pack of rays; expected a folder"),
+        ("gone", "gone: cannot read"),
+    ] {
+        assert_trouble(&raypencil(at, &["check", "pack", candidate]), &[found]);
+    }
+    // And what is one, where maps of sensors are asked for.
+    fs::write(at.join("one.toml"), "[[rays]]\nname = \"a\"\nfile = \"rays.csv\"\n").expect("a file");
+    screen(at, &["cast", "floor.obj", "one.toml", "-o", "one"], 0);
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../data/packs/pyramids");
+    let scenes = scenes.to_str().expect("a path");
+    for (candidate, found) in [
+        ("one/cloud.pcd", "one/cloud.pcd: candidate: a point cloud; expected maps of its sensors"),
+        ("pack", "pack: candidate: a pack of rays; expected maps of its sensors"),
+        ("pack/raypack.json", "candidate: a pack of rays; expected maps of its sensors"),
+    ] {
+        assert_trouble(&raypencil(at, &["check", scenes, candidate]), &[found, "`pack MESH --rays RAYS`"]);
+    }
+    let told = "candidate: a pack of a scene, or its input; expected a folder with face.npy";
+    assert_trouble(&raypencil(at, &["check", "pack", scenes]), &[told]);
+}
+
+#[test]
+fn a_file_without_rays_is_refused_with_a_sentence() {
+    let folder = folder();
+    let at = folder.path();
+    write_npy_numbers(at.join("none.npy"), &[0, 6], &[] as &[f64]).expect("a file");
+    let told = "none.npy: shape: [0, 6]; expected one ray or more";
+    assert_trouble(&raypencil(at, &["cast", "floor.obj", "none.npy"]), &[told]);
+    assert_trouble(&raypencil(at, &["cast", "floor.obj", "none.npy", "--allow-empty", "-o", "out"]), &[told]);
+    assert_trouble(&raypencil(at, &["pack", "floor.obj", "--rays", "none.npy", "-o", "empty"]), &[told]);
+    assert!(!at.join("out").exists() && !at.join("empty/raypack.json").exists());
+    // Columns are told by their names.
+    let text =
+        "dx,dy,dz,ox,oy,oz\n0,0,-2,1,0.5,3\n0.125,0,-2,-1,0.25,3\n0,0,-1,9,0,3\n0.1,0.2,-3,0.7,-0.3,5\n";
+    fs::write(at.join("named.csv"), text).expect("a file");
+    screen(at, &["cast", "floor.obj", "named.csv", "-o", "named"], 0);
+    screen(at, &["check", "pack", "named"], 0);
+    fs::write(at.join("named.csv"), text.replace("dx", "u")).expect("a file");
+    let told = "named.csv: line 1: \"u\"; expected a heading of the names ox,oy,oz,dx,dy,dz";
+    assert_trouble(&raypencil(at, &["cast", "floor.obj", "named.csv"]), &[told]);
+}
