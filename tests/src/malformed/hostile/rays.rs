@@ -155,8 +155,8 @@ const GOOD_SETS: [&str; 25] = [
 fn is_good(name: &str) -> bool {
     if let (true, Some((at, what))) = (name.starts_with("csv"), word_of(name)) {
         return match at.checked_sub(8).map(|at| at % 8) {
-            // Any heading will do that is no number.
-            None => ["word", "nested", "byte-0", "control", "none"].contains(&what),
+            // A heading has names that are known.
+            None => false,
             Some(0..6) => NUMBERS.contains(&what),
             // From t_min = 0 on, up to t_max, which may be infinite.
             Some(6) => what == "half",
