@@ -10,7 +10,7 @@ use raypencil_cast::{
 use raypencil_scene::pattern::{Cone, EchoLight, Keep, Mounting, PatternRays, Returns, Spinning};
 use raypencil_scene::{CastRay, NamedRaySet, Precision, Sides, Silent, Triangles};
 
-use super::clouds_of_others::{bend, expect, head, of_frame, room, still};
+use super::cloud_trial::{bend, expect, head, of_frame, room, still};
 
 const SENSOR: CloudFrame = CloudFrame::Sensor;
 

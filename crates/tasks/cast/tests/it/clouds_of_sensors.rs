@@ -6,7 +6,7 @@ use raypencil_cast::{CandidateConventions, CloudFrame};
 use raypencil_scene::pattern::{Channel, Spinning};
 use raypencil_scene::{CastRay, Precision};
 
-use super::clouds_of_others::{Fields, Point, Trial, bend, expect, head, of_frame, points, set_of, still};
+use super::cloud_trial::{Fields, Point, Trial, bend, expect, head, of_frame, points, set_of, still};
 
 const SENSOR: CloudFrame = CloudFrame::Sensor;
 
