@@ -13,6 +13,7 @@ use super::candidate::{CandidateConventions, read_candidate};
 use super::clouds::{BeamQuestion, CloudCase, CloudFacts, is_cloud, of_cloud, read_cloud_of};
 use super::explain::explain;
 use super::lengths::lengths;
+use super::mistakes::OfArrays;
 use super::read::RayPack;
 use super::scan::Scan;
 use super::trial::Trial;
@@ -296,11 +297,12 @@ fn judge(
             found.extend(constants(trial, exact, sides));
             found
         };
-        let alone = match case {
+        let alone: Vec<_> = match case {
             None => orders(stated.0, shape).into_iter().chain(axes(stated.0)).collect(),
             Some(_) => Vec::new(),
         };
-        explain(exact, mesh, (rays, sides), stated, (&numbers, &alone), precision, &wrong)
+        let of_arrays = OfArrays { numbers: &numbers, alone: &alone };
+        explain(exact, mesh, (rays, sides), stated, &of_arrays, precision, &wrong)
     });
     let answers = cast_with(exact, rays, sides, Questions::default(), progress);
     let cloud = case.map(|case| case.facts);

@@ -4,8 +4,8 @@ use raypencil_referee::ExactCast;
 use raypencil_scene::{CastRay, Precision, Sides, Triangles};
 
 use super::mistakes::{
-    ABOUT_SENSORS, Extra, Group, Mistake, Named, OF_ARGUMENTS, OF_ARRAYS, OF_MISSES, OF_NUMBERS, OF_RULES,
-    OF_UNITS, OfCloud, PRECISION,
+    ABOUT_SENSORS, Group, Mistake, Named, OF_ARGUMENTS, OF_ARRAYS, OF_MISSES, OF_NUMBERS, OF_RULES, OF_UNITS,
+    OfArrays, OfCloud, PRECISION,
 };
 use super::trial::Trial;
 use crate::comparison::Stated;
@@ -32,14 +32,14 @@ impl Explanation {
     }
 }
 
-/// Looks for the mistake, or the two, without which hardly any ray is wrong. `numbers` finds those of arrays, `alone` are mistakes of
-/// arrays that are no half of two, and `wrong` are the indices of wrong rays.
+/// Looks for the mistake, or the two, without which hardly any ray is wrong. `wrong` are the indices of wrong
+/// rays.
 pub(super) fn explain(
     exact: &ExactCast<'_>,
     mesh: &Triangles,
     (rays, sides): (&[CastRay], Sides),
     (stated, of_cloud): (&Stated, Option<&OfCloud<'_>>),
-    (numbers, alone): (&dyn Fn(&Trial) -> Vec<Extra<'static>>, &[Extra<'_>]),
+    OfArrays { numbers, alone }: &OfArrays<'_>,
     precision: Precision,
     wrong: &[usize],
 ) -> Option<Explanation> {
@@ -102,7 +102,7 @@ pub(super) fn explain(
     let left_without = |mistake: &Named<'_>| trial.without(mistake.undo)?.wrong(exact, mesh, most);
     // Single precision excuses much: it comes last.
     let common = mistakes.iter().copied();
-    let singles = common.chain(estimated.iter().chain(alone).map(Named::extra)).chain([precision]);
+    let singles = common.chain(estimated.iter().chain(*alone).map(Named::extra)).chain([precision]);
     let single = singles.filter_map(|mistake| Some((left_without(&mistake)?, mistake)));
     let mut singles: Vec<(usize, Named<'_>)> = single.collect();
     // All rays are asked of the best one first: mostly it holds, and no other is asked.

@@ -27,6 +27,14 @@ pub(super) enum Group {
     Others,
 }
 
+/// The mistakes of arrays that follow from their numbers or their shape.
+pub(super) struct OfArrays<'a> {
+    /// Mistakes with a number, which is found from a trial.
+    pub(super) numbers: &'a dyn Fn(&Trial) -> Vec<Extra<'static>>,
+    /// Mistakes that are no half of two.
+    pub(super) alone: &'a [Extra<'a>],
+}
+
 /// A cloud in place of arrays: its points, and the mistakes of clouds.
 pub(super) struct OfCloud<'a> {
     /// The points of all rays.

@@ -169,8 +169,8 @@ fn half_bits(value: f64) -> u16 {
         return 0x7e00;
     }
     // Units of the last place are 2^-24 below the smallest normal number, 2^-14.
-    let exponent = (size.log2().floor().max(-14.0) as i32).min(16);
-    let units = (size / 2.0_f64.powi(exponent - 10)).round_ties_even();
+    let exponent = libm::ilogb(size).clamp(-14, 16);
+    let units = libm::scalbn(size, 10 - exponent).round_ties_even();
     let bits = if size.is_infinite() { 31.0 * 1024.0 } else { units + f64::from(exponent + 14) * 1024.0 };
     sign | bits as u16
 }
@@ -217,7 +217,8 @@ fn mistakes_are_found_in_arrays_of_fewer_digits() {
 #[test]
 fn answers_in_another_order_are_named() {
     // 10 rows of 20.
-    let orders: [(fn(usize) -> usize, &str); 4] = [
+    type From = fn(usize) -> usize;
+    let orders: [(From, &str); 4] = [
         (|k| (9 - k / 20) * 20 + k % 20, "if rows of answers run from the last to the first"),
         (|k| k / 20 * 20 + 19 - k % 20, "if the answers of each row run from the last to the first"),
         (|k| 199 - k, "if all answers run from the last ray to the first"),
