@@ -63,7 +63,7 @@ fn hostile_calibrations() {
 
 #[test]
 fn hostile_rays() {
-    assert_family(&rays(), 730, 20);
+    assert_family(&rays(), 730, 16);
 }
 
 #[test]
