@@ -99,12 +99,7 @@ impl ExactCast<'_> {
 
     /// [`first_meetings`](Self::first_meetings), compiled once, with this crate's optimisation.
     #[inline(never)]
-    fn walk_to_first<'r>(
-        &self,
-        rays: &'r [CastRay],
-        sides: Sides,
-        each: &mut dyn FnMut(usize, &Reading<(CastMeeting<'r>, u32)>, DecidedBy),
-    ) {
+    fn walk_to_first<'r>(&self, rays: &'r [CastRay], sides: Sides, each: &mut EachMeeting<'_, 'r>) {
         let mut walks = FirstWalks {
             cast: self,
             sides,
@@ -184,6 +179,9 @@ impl ExactCast<'_> {
         nearest.sorted()
     }
 }
+
+/// Gets the index of a ray, what it reads, and what decided that.
+type EachMeeting<'e, 'r> = dyn FnMut(usize, &Reading<(CastMeeting<'r>, u32)>, DecidedBy) + 'e;
 
 /// Many rays on their way to their nearest faces; `each` gets the index of every ray whose way is over.
 struct FirstWalks<'c, 'r, E> {

@@ -57,6 +57,10 @@ fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
 
 /// a b = product + rest, exactly, for sizes from [`MIN_MAGNITUDE`] to [`MAX_MAGNITUDE`]: by one fused operation where the processor has
 /// it, else by T. Dekker and G. Veltkamp. Both give the same numbers.
+#[allow(
+    clippy::disallowed_methods,
+    reason = "the rest of a product is a number of f64: the same, fused or not"
+)]
 #[inline(always)]
 fn two_product<const FUSED: bool>(a: f64, b: f64) -> (f64, f64) {
     #[inline(always)]

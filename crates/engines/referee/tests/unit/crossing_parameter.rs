@@ -2,7 +2,7 @@
 
 use super::super::tests::holds_quotient;
 use super::*;
-use crate::numbers::number::{Dyadic, Number};
+use crate::numbers::number::Dyadic;
 use crate::numbers::vector::Vector;
 use crate::splitmix::SplitMix64;
 
