@@ -134,6 +134,11 @@ struct Judged {
     ratios: [Option<f64>; 7],
 }
 
+/// The same ray without its ends.
+fn endless(ray: &CastRay) -> CastRay {
+    CastRay { t_min: 0.0, t_max: f64::INFINITY, ..*ray }
+}
+
 struct Judge<'a> {
     exact: &'a ExactCast<'a>,
     mesh: &'a Triangles,
@@ -219,8 +224,7 @@ impl Judge<'_> {
             return Ok(Reading::Hit(faces[0]));
         }
         // What the ray meets beyond its ends, and what rays around it do.
-        let endless = CastRay { t_min: 0.0, t_max: f64::INFINITY, ..*ray };
-        let beyond = self.exact.all(&endless, self.sides).into_iter().flat_map(|group| group.faces);
+        let beyond = self.exact.all(&endless(ray), self.sides).into_iter().flat_map(|group| group.faces);
         let most = self.exact.lateral_error(ray, self.precision);
         let round = [
             [1.0, 0.0],
@@ -235,12 +239,14 @@ impl Judge<'_> {
         let beside = round
             .into_iter()
             .flat_map(|by: [f64; 2]| self.exact.first_moved(ray, self.sides, by.map(|part| part * most)));
-        let is_excused = |face: &FaceId| {
-            self.exact.rule(ray, self.sides, Reading::Hit(*face), self.precision) != Ruling::Wrong
-        };
-        let found = beyond.map(|met| met.face).chain(beside).find(is_excused);
+        let found = beyond.map(|met| met.face).chain(beside).find(|face| self.is_excused(ray, *face));
         let exact = read.clone().map(|faces| faces[0]);
         found.map(Reading::Hit).ok_or(Wrong::Something { exact })
+    }
+
+    /// Whether a program may say that the ray hits this face.
+    fn is_excused(&self, ray: &CastRay, face: FaceId) -> bool {
+        self.exact.rule(ray, self.sides, Reading::Hit(face), self.precision) != Ruling::Wrong
     }
 
     /// What stands in the place of a face, where it is not said: the better one of too near and a miss.
@@ -266,14 +272,21 @@ impl Judge<'_> {
     ) -> Result<FaceId, Wrong> {
         let value = if is_t { CastValue::T } else { CastValue::Range };
         let of = |hit: &CastHit| if is_t { hit.t.double } else { hit.range.double };
-        let is_there = |face: &FaceId| {
+        let is_on = |ray: &CastRay, face: FaceId| {
             self.exact
-                .values(ray, *face)
+                .values(ray, face)
                 .is_some_and(|hit| (of(&hit) - distance).abs() <= self.bound(value, index, ray, &hit))
         };
+        let is_there = |face: &FaceId| is_on(ray, *face);
         let all = || self.exact.all(ray, self.sides).into_iter().flat_map(|group| group.faces);
         let found = read.hit().and_then(|first| first.iter().copied().find(is_there));
         let found = found.or_else(|| all().map(|met| met.face).find(is_there));
+        // A face a little beyond an end of the ray, which rounding brings before it.
+        let beyond = || {
+            let endless = endless(ray);
+            let faces = self.exact.all(&endless, self.sides).into_iter().flat_map(|group| group.faces);
+            faces.map(|met| met.face).find(|face| is_on(&endless, *face) && self.is_excused(ray, *face))
+        };
         let value_of = |face: FaceId| self.exact.values(ray, face).map_or(f64::NAN, |hit| of(&hit));
         let exact = read.clone().map(|faces| value_of(faces[0]));
         // A face that only a ray beside this one meets: its distance there is that of its plane, up to the bound.
@@ -285,7 +298,7 @@ impl Judge<'_> {
                 faces.into_iter().find(|face| self.is_plane_at(index, ray, *face, distance, is_t))
             })
         };
-        found.or_else(beside).ok_or(Wrong::Distance { stated: distance, exact })
+        found.or_else(beyond).or_else(beside).ok_or(Wrong::Distance { stated: distance, exact })
     }
 
     /// Whether the ray passes the plane of a face at this distance.
