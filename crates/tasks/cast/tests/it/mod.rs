@@ -12,5 +12,6 @@ mod lidar;
 mod packs;
 mod reported;
 mod returns;
+mod returns_at_limits;
 mod shortest_range;
 mod written;
