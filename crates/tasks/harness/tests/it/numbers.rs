@@ -3,23 +3,27 @@
 
 use std::time::Duration;
 
+use glam::DVec3;
 use raypencil_cast::{Comparison, Questions, RayVerdict, cast, rays_from_bytes};
 use raypencil_files::{ArrayData, Limits, Raster, read_exr, write_npy};
 use raypencil_harness::{
     Candidate, Estimate, ImageComparison, MapFormat, MonteCarloImage, RadianceComparison, RadianceMap,
     RaySetResult, Validation, Z_TEST_LIMITS, compare_images, compare_radiance, contender, map_arrays, probe,
-    scene_json, write_maps_as,
+    scene_json, validate, write_maps_as, write_ray_sets,
 };
-use raypencil_judge::{GroundTruth, Largest};
+use raypencil_judge::{GroundTruth, JudgeShare, Largest};
 use raypencil_referee::Margin;
-use raypencil_report::number;
+use raypencil_report::{number, quantity};
+use raypencil_scene::pattern::{Mounting, PatternRays};
 use raypencil_scene::{
-    Image, Maybe, Place, Precision, Request, Sampling, Scene, SensorId, Sides, Silent, Stage, Triangles,
+    CastRay, Image, Maybe, NamedRaySet, Place, Precision, Request, Sampling, Scene, SensorId, Sides, Silent,
+    Stage, Triangles,
 };
+use raypencil_scene_io::Subject;
 use raypencil_tests::fixtures;
 use serde_json::{Value, json};
 
-use crate::reports::{summary_json, summary_markdown};
+use crate::reports::{report_html, summary_json, summary_markdown};
 
 fn summary(validation: &Validation) -> Value {
     serde_json::from_str(&summary_json(validation)).unwrap()
@@ -356,5 +360,87 @@ fn a_field_of_view_is_about_its_own_principal_point() {
     for (axis, expected) in expected.into_iter().enumerate() {
         let told = told[axis].as_f64().unwrap();
         assert!((told - expected).abs() < 1e-9, "{axis}: {told} {expected}");
+    }
+}
+
+/// The small subject with a second beam, which has twice the power.
+fn two_beams() -> Subject {
+    let mut subject = fixtures::subject();
+    let scene = &subject.scene;
+    let mut bright = scene.beams()[0];
+    bright.sensor.power = 2.0;
+    let beams = vec![scene.beams()[0], bright];
+    subject.scene =
+        Scene::new(scene.mesh().clone(), *scene.camera(), beams, scene.atmosphere(), scene.flux_model())
+            .unwrap();
+    subject
+}
+
+fn validated(subject: Subject) -> Validation {
+    let contenders = ["scanline", "tracer"].map(|name| contender(name).unwrap());
+    validate(subject, &contenders, JudgeShare::default(), &Silent)
+}
+
+#[test]
+fn the_picture_of_the_light_is_the_sum_over_all_beams() {
+    let mut validation = validated(two_beams());
+    // Each renderer has light of its own, so that none stands for another.
+    for image in &mut validation.rendered[1].output.flux {
+        image.cells_mut().iter_mut().for_each(|flux| *flux *= 8.0);
+    }
+    let page = report_html(&validation);
+    let mut brightest: f64 = 0.0;
+    for rendered in &validation.rendered {
+        let [one, two] = rendered.output.flux.as_slice() else { panic!("two images") };
+        let sum: Vec<f64> = one.cells().iter().zip(two.cells()).map(|(one, two)| one + two).collect();
+        let lit = sum.iter().filter(|flux| **flux > 0.0).count();
+        let note = format!("{} in {lit} pixels", quantity(sum.iter().sum(), "W"));
+        assert!(page.contains(&note), "{note}");
+        brightest = sum.iter().copied().fold(brightest, f64::max);
+    }
+    // The scale of the pictures ends at the brightest pixel of all: its marks, `left:36%">1e-8`, stand at their parts of it.
+    let bar = page.split("flux, W per pixel").next().unwrap().rsplit("class=\"ramp\"").next().unwrap();
+    let mark = bar.split("<span style=\"left:").nth(2).expect("a mark beside that of 0");
+    let (percent, rest) = mark.split_once("%\">").unwrap();
+    let flux: f64 = rest.split('<').next().unwrap().replace('\u{2212}', "-").parse().unwrap();
+    let end = 100.0 * flux / percent.parse::<f64>().unwrap();
+    assert!((end - brightest).abs() < 1e-12 * brightest, "{end} is not {brightest}");
+}
+
+#[test]
+fn each_set_of_rays_has_its_own_answers() {
+    let down = |x: f64| CastRay::new(DVec3::new(x, 0.0, 50.0), DVec3::NEG_Z);
+    let set = |name: &str, rays: Vec<CastRay>| {
+        let pattern = PatternRays {
+            shape: vec![rays.len() as u64],
+            rays,
+            times: None,
+            weights: None,
+            returns: None,
+            elevations_deg: None,
+            mounting: Mounting::HERE,
+        };
+        NamedRaySet::new(name, pattern, Sides::Both).unwrap()
+    };
+    // One ray down to the ground, and three beside it, one of them into the sky.
+    let up = CastRay::new(DVec3::new(3.0, 0.0, 50.0), DVec3::Z);
+    let sets = vec![set("one", vec![down(0.0)]), set("three", vec![down(1.0), up, down(2.0)])];
+    let mut subject = fixtures::subject();
+    subject.scene = subject.scene.with_ray_sets(sets).unwrap();
+    let validation = validated(subject.clone());
+    let of = |set: &RaySetResult| (set.name.clone(), set.answers.first.len(), set.answers.counts().0);
+    let told: Vec<_> = validation.ray_sets.iter().map(of).collect();
+    assert_eq!(told, [("one".to_string(), 1, 1), ("three".to_string(), 3, 2)]);
+    for renderer in ["tracer", "referee"] {
+        let folder = tempfile::tempdir().unwrap();
+        let written = write_ray_sets(&subject, renderer, folder.path(), &Silent).unwrap().unwrap();
+        let hits: Vec<Value> = written
+            .iter()
+            .map(|path| {
+                serde_json::from_slice::<Value>(&std::fs::read(path).unwrap()).unwrap()["counts"]["hits"]
+                    .clone()
+            })
+            .collect();
+        assert_eq!(hits, [1, 2], "{renderer}");
     }
 }

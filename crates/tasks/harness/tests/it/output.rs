@@ -547,3 +547,35 @@ fn a_candidates_misses_are_reported_and_written_as_packs() {
     hidden.sort_unstable();
     assert_eq!(hidden, [false, true]);
 }
+
+#[test]
+fn a_miss_of_a_sum_over_pencils_is_written_with_the_whole_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut validation = fixtures::agreeing();
+    let scene = &validation.subject.scene;
+    let mut recorded = Recorded::of_output("mine", scene, &validation.rendered[1].output, Precision::F64);
+    let image = recorded.answers.light[0].image.as_mut().unwrap();
+    let lit = image.cells().iter().position(|flux| *flux > 0.0).expect("a pixel with light") as u32;
+    let (i, j) = (lit % image.width(), lit / image.width());
+    image.set(i, j, 2.0 * image.at(i, j));
+    let candidate = Candidate {
+        name: "mine".into(),
+        folder: "mine".into(),
+        declared: Default::default(),
+        recorded,
+        images: Vec::new(),
+        radiance: Vec::new(),
+        ray_sets: vec![],
+    };
+    validation.evaluate(vec![candidate], &Silent);
+    let written = write_validation(&validation, folder.path(), &Silent).unwrap();
+    let summary: Value = serde_json::from_slice(&fs::read(written.summary).unwrap()).unwrap();
+    let misses = summary["panel"]["renderers"][2]["misses"].as_array().unwrap();
+    assert_eq!(misses.len(), 1);
+    // Which pencils land in a pixel depends on all of the ground: without a part of it the sum would be another.
+    let pack = folder.path().join(misses[0]["reproducer"].as_str().unwrap());
+    let small = raypencil_pack::check_pack(&pack, &pack, None, &Silent).unwrap().subject.scene;
+    let whole = &validation.subject.scene;
+    assert_eq!(small.mesh().faces().len(), whole.mesh().faces().len());
+    assert_eq!((small.camera().sensor.width, small.beams()[0].sensor.columns), (48, 64));
+}
