@@ -107,3 +107,7 @@ pub(crate) fn absorbed(storage: Storage, stated: Value, corrected: Value, exact:
     };
     if near { exact } else { corrected }
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/agree.rs"]
+mod tests;

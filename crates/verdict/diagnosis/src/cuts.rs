@@ -206,3 +206,7 @@ fn held(case: Case<'_>, sensor: SensorId, wrong: &WrongRays, (by, is_above): (Cu
     found.push(Held::Anything);
     found
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/cuts.rs"]
+mod tests;

@@ -68,3 +68,33 @@ fn with_camera(scene: &Scene, numbers: &Numbers) -> Option<Scene> {
     let (mesh, beams) = (Arc::clone(scene.mesh()), scene.beams().to_vec());
     Scene::new(mesh, camera, beams, scene.atmosphere(), scene.flux_model()).ok()
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::it::candidates::pyramids;
+
+    /// Each number of the camera changes in its own way: the rays of a pixel by those numbers are those of the camera.
+    #[test]
+    fn the_camera_with_other_numbers_has_their_rays() {
+        let scene = pyramids().scene;
+        let numbers = Numbers {
+            offset: [0.25, -0.5],
+            focal: 1.5,
+            pitch: [1.25, 0.75],
+            turn: DVec3::new(0.02, -0.01, 0.03),
+            shift: DVec3::new(0.1, 0.2, -0.3),
+            ..Numbers::SCENE
+        };
+        let other = with_camera(scene, &numbers).expect("a scene");
+        for (i, j) in [(0, 0), (3, 1), (7, 5)] {
+            let place = Place { sensor: SensorId::Camera, i, j };
+            let asked = crate::rules::ray(scene, place, &numbers).expect("a ray");
+            let ray = other.ray(SensorId::Camera, i, j).expect("a ray");
+            assert!((ray.origin - asked.origin).length() < 1e-12, "{ray:?} {asked:?}");
+            assert!((ray.direction - asked.direction).length() < 1e-15, "{ray:?} {asked:?}");
+        }
+    }
+}

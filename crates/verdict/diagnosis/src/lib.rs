@@ -110,3 +110,10 @@ pub use diagnosis::{Diagnosis, Reason};
 pub use mistake::{
     AngleUnit, Cosine, CutBy, FrameAxes, Held, Leg, Length, LengthUnit, Mistake, Turn, Vectors,
 };
+
+// The tests by public items are in the program of the unit tests: one executable for the crate.
+#[cfg(test)]
+extern crate self as raypencil_diagnosis;
+#[cfg(test)]
+#[path = "../tests/it/mod.rs"]
+mod it;

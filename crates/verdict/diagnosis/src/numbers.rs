@@ -65,4 +65,18 @@ mod tests {
         assert_eq!(plainest(0.1264, 0.0), 0.1264);
         assert_eq!(plainest_between(0.126, 0.128), 0.127);
     }
+
+    #[test]
+    fn a_number_between_two_may_be_the_lower_one_and_not_the_higher() {
+        // The middle of 0.5 and 1 is nearest to 1, and next to 0.8.
+        assert_eq!(plainest_between(0.5, 1.0), 0.8);
+        // The middle of 2 and 2.5 is nearest to 2.
+        assert_eq!(plainest_between(2.0, 2.5), 2.0);
+    }
+
+    #[test]
+    fn digits_count_from_the_first_that_is_not_0() {
+        assert_eq!([1, 2, 3].map(|digits| rounded_to_digits(0.012_345, digits)), [0.01, 0.012, 0.0123]);
+        assert_eq!([1, 2, 3].map(|digits| rounded_to_digits(-98_765.0, digits)), [-1e5, -99e3, -98_800.0]);
+    }
 }

@@ -204,3 +204,7 @@ pub(crate) fn ray(scene: &Scene, place: Place, numbers: &Numbers) -> Option<Sens
         axis,
     })
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/rules.rs"]
+mod tests;

@@ -83,3 +83,25 @@ pub(crate) fn spread_over(scene: &Scene, sensors: &[SensorId], count: u64) -> Ve
     }
     places
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::it::candidates::pyramids;
+
+    #[test]
+    fn of_some_rays_at_most_so_many_are_taken_and_of_all_at_least_32_of_each_sensor() {
+        let camera = |i: u32| (SensorId::Camera, 0, i);
+        for (rays, count, expected) in [(8, 8, 8), (9, 8, 5), (15, 8, 8), (16, 8, 8), (17, 8, 6)] {
+            let rays: BTreeSet<Key> = (0..rays).map(camera).collect();
+            assert_eq!(some_of(&rays, count).len(), expected, "{} {count}", rays.len());
+        }
+        let sensors = [SensorId::Camera, SensorId::Beam(0)];
+        let places = spread_over(pyramids().scene, &sensors, 10);
+        for sensor in sensors {
+            let own = places.iter().filter(|place| place.sensor == sensor);
+            let own: BTreeSet<Key> = own.map(|place| key(*place)).collect();
+            assert!((32..64).contains(&own.len()), "{sensor}: {}", own.len());
+        }
+    }
+}

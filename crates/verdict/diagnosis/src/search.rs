@@ -307,3 +307,24 @@ fn best(found: Vec<Finding>) -> Option<Finding> {
     let left = |found: &Finding| found.tally.off() as f64 / found.tally.wrong.max(1) as f64;
     found.into_iter().reduce(|best, other| if left(&other) < left(&best) { other } else { best })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_findings_that_leave_as_much_the_first_is_told() {
+        let finding = |mistake, explained, broken| Finding {
+            mistakes: vec![mistake],
+            corrections: Vec::new(),
+            rules: None,
+            tally: Tally { wrong: 100, explained, broken, right: 100 },
+        };
+        let told = |found: Vec<Finding>| best(found).expect("one").mistakes;
+        let [rows, columns, backs] = [Mistake::RowsReversed, Mistake::ColumnsReversed, Mistake::BacksHit];
+        assert_eq!(told(vec![finding(rows, 99, 0), finding(columns, 100, 1), finding(backs, 99, 0)]), [rows]);
+        assert_eq!(told(vec![finding(rows, 99, 0), finding(columns, 100, 0)]), [columns]);
+        // A right ray that breaks counts as a wrong one that stays.
+        assert_eq!(told(vec![finding(rows, 100, 2), finding(columns, 99, 0)]), [columns]);
+    }
+}

@@ -3,6 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::path::{Path, PathBuf};
 
 use cargo_metadata::{Metadata, MetadataCommand};
 use toml::Table;
@@ -71,6 +72,31 @@ fn test_executables_are_few() {
         "{} test executables: {found:#?}",
         found.len()
     );
+}
+
+/// Cargo builds no unit test of a library with `test = false`, and says nothing of it.
+#[test]
+fn a_library_without_a_test_executable_has_no_unit_tests() {
+    fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+        for entry in fs::read_dir(folder).expect("a folder of sources") {
+            let path = entry.expect("an entry").path();
+            match path.is_dir() {
+                true => sources(&path, found),
+                false if path.extension().is_some_and(|ending| ending == "rs") => found.push(path),
+                false => {}
+            }
+        }
+    }
+    for package in &workspace().packages {
+        let library = package.targets.iter().find(|target| target.src_path.ends_with("src/lib.rs"));
+        let Some(library) = library.filter(|target| !target.test) else { continue };
+        let mut all = Vec::new();
+        sources(library.src_path.as_std_path().parent().expect("a folder"), &mut all);
+        for path in all {
+            let text = fs::read_to_string(&path).expect("a source file");
+            assert!(!text.contains("#[cfg(test)]"), "{}: cargo runs none of its tests", path.display());
+        }
+    }
 }
 
 #[test]

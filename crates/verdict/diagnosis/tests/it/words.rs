@@ -250,3 +250,62 @@ fn json_has_each_count_by_its_name() {
     assert_eq!(["wrong", "explained", "right", "broken"].map(|key| &json[key]), [11, 12, 13, 14]);
     assert_eq!(json["bundles"], serde_json::json!(["camera", "beam-2"]));
 }
+
+#[test]
+fn what_is_lost_is_told_with_its_end_and_its_number() {
+    for (by, is_above, lines, held, words) in [
+        (CutBy::Row, true, 1, Held::NoHit, "the last row says \"no hit\" where something is hit"),
+        (CutBy::Row, false, 1, Held::Anything, "the first row is wrong, and nothing else"),
+        (CutBy::Row, false, 3, Held::NoHit, "the first 3 rows say \"no hit\" where something is hit"),
+        (CutBy::Column, true, 2, Held::Neighbour, "the last 2 columns repeat the column beside"),
+        (CutBy::Column, false, 1, Held::Neighbour, "the first column repeats the column beside"),
+        (CutBy::Column, true, 1, Held::Constant(0.5), "the last column holds 0.5 everywhere"),
+        (CutBy::Column, true, 2, Held::Constant(0.5), "the last 2 columns hold 0.5 everywhere"),
+        (CutBy::Range, true, 0, Held::NoHit, "hits beyond 12.5 m are lost"),
+        (CutBy::Range, false, 0, Held::NoHit, "hits nearer than 12.5 m are lost"),
+        (CutBy::Depth, true, 0, Held::NoHit, "hits deeper than 12.5 m are lost"),
+        (CutBy::Depth, false, 0, Held::NoHit, "hits less deep than 12.5 m are lost"),
+        (CutBy::Range, true, 0, Held::Constant(9.0), "hits beyond 12.5 m have the length 9 m"),
+    ] {
+        assert_eq!(cut(by, is_above, 12.5, lines, held).to_string(), words);
+    }
+}
+
+#[test]
+fn rays_through_another_point_of_their_cell_are_told_which() {
+    let words = |columns, rows| Mistake::CornerRays { columns, rows }.to_string();
+    for (columns, rows, place) in [
+        (-0.5, -0.5, "the top left corner"),
+        (0.5, -0.5, "the top right corner"),
+        (-0.5, 0.5, "the bottom left corner"),
+        (0.5, 0.5, "the bottom right corner"),
+    ] {
+        assert!(words(columns, rows).starts_with(&format!("rays go through {place} of their cell")));
+    }
+    for (columns, rows, off) in [
+        (0.25, 0.0, "0.25 columns right"),
+        (-0.25, 0.5, "0.25 columns left and 0.5 rows down"),
+        (0.0, -0.5, "0.5 rows up"),
+    ] {
+        assert!(words(columns, rows).starts_with(&format!("rays are {off} off")), "{}", words(columns, rows));
+    }
+}
+
+#[test]
+fn a_sentence_lists_its_sensors_and_counts_what_breaks() {
+    let sensors = [SensorId::Camera, SensorId::Beam(0), SensorId::Beam(1)];
+    let of =
+        |broken| Reason { broken, ..reason(vec![Mistake::RowsReversed], &sensors, false, [3, 4]) }.sentence();
+    assert!(
+        of(0).starts_with("75.00 % of the wrong rays of the camera, beam-0 and beam-1 agree if "),
+        "{}",
+        of(0)
+    );
+    for (broken, end) in [
+        (0, ", and no right ray breaks"),
+        (1, ", and 1 of 40 right rays breaks"),
+        (2, ", and 2 of 40 right rays break"),
+    ] {
+        assert!(of(broken).ends_with(end), "{}", of(broken));
+    }
+}

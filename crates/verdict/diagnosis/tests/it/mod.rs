@@ -1,6 +1,6 @@
 //! Which mistakes `diagnose` names: on candidates made from the exact answers.
 
-mod candidates;
+pub(crate) mod candidates;
 mod drawn;
 mod light;
 mod one;
