@@ -31,8 +31,6 @@ fn checked(command: &Check, json: bool) -> Result<Outcome, Trouble> {
         ignores_faces: command.no_faces,
         ..command.declared.declarations()
     };
-    let drawn = Verification::Drawn { seed: command.seed };
-    let share = if command.verify { Verification::All } else { drawn };
     match pack_form(&command.pack) {
         PackForm::Sensors => memory::ask_check(&command.pack)?,
         PackForm::Rays => memory::ask_check_rays(&command.pack, &command.candidate)?,
@@ -41,7 +39,8 @@ fn checked(command: &Check, json: bool) -> Result<Outcome, Trouble> {
     let choice = CloudChoice { topic: command.topic.as_deref(), message: command.message };
     let cloud = CloudConventions { frame: command.frame.unwrap_or_default(), choice };
     let declared = (&declarations, cloud);
-    let checked = check_any_pack(&command.pack, &command.candidate, declared, share, &spinner)?;
+    let checked =
+        check_any_pack(&command.pack, &command.candidate, declared, verification(command), &spinner)?;
     if let Some(folder) = &command.output {
         checked.write(folder)?;
     }
@@ -49,6 +48,11 @@ fn checked(command: &Check, json: bool) -> Result<Outcome, Trouble> {
     let document = checked.document();
     say(&if json { document.json() } else { document.screen() });
     Ok(if checked.passes() { Outcome::Fine } else { Outcome::Differs })
+}
+
+/// Which answers of the pack are held to the referee's.
+fn verification(command: &Check) -> Verification {
+    if command.verify { Verification::All } else { Verification::Drawn { seed: command.seed } }
 }
 
 /// Refuses options that a pack of this form has no use for.
@@ -85,5 +89,29 @@ fn refuse_declared(command: &Check) -> Result<(), Trouble> {
             None => Ok(()),
         },
         PackForm::Triangles | PackForm::Rays | PackForm::Sensors => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::ColorChoice;
+
+    use super::*;
+    use crate::args::{Arguments, Command};
+
+    #[test]
+    fn all_answers_are_held_or_those_that_the_asked_seed_draws() {
+        for (options, expected) in [
+            (&[][..], Verification::Drawn { seed: None }),
+            (&["--seed", "7"], Verification::Drawn { seed: Some(7) }),
+            (&["--seed", "0"], Verification::Drawn { seed: Some(0) }),
+            (&["--verify"], Verification::All),
+        ] {
+            let words = ["raypencil", "check", "pack", "answers"].iter().chain(options);
+            let read =
+                Arguments::read(words.map(Into::into).collect(), ColorChoice::Never).expect("arguments");
+            let Some(Command::Check(command)) = read.command else { panic!("{options:?}") };
+            assert_eq!(verification(&command), expected, "{options:?}");
+        }
     }
 }
