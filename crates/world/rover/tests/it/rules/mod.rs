@@ -4,6 +4,7 @@ use super::common;
 
 mod between_points;
 mod elevation_map;
+mod limits;
 mod localisation;
 mod mapper;
 mod mended;
