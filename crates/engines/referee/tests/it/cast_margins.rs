@@ -293,6 +293,24 @@ fn an_edge_that_only_touches_the_start_of_the_ray_is_a_line_of_jumps() {
 }
 
 #[test]
+fn a_corner_that_only_touches_the_start_of_the_ray_is_a_jump() {
+    // All of a triangle but its lowest corner is before the start. The ray through this corner meets it there, and all rays beside it
+    // meet the floor behind it, or nothing.
+    let corner = [[0.0, 0.0, 0.0], [2.0, 1.0, 1.0], [1.0, 2.0, 1.0]];
+    let floor = [[-8.0, -8.0, -1.0], [8.0, -8.0, -1.0], [0.0, 8.0, -1.0]];
+    let vertices: Vec<[f64; 3]> = corner.into_iter().chain(floor).collect();
+    let above_a_floor = mesh(&vertices, &[[0, 1, 2], [3, 4, 5]]);
+    let ray = CastRay { t_min: 4.0, ..down(-0.25, 0.125, 4.0) };
+    assert_is(ExactCast::new(&above_a_floor).margins(&ray, Sides::Both).surface, 0.25);
+    // What is met before it hides it.
+    let plate = floor.map(|[x, y, _]| [x, y, 0.5]);
+    let vertices: Vec<[f64; 3]> = vertices.into_iter().chain(plate).collect();
+    let hidden = mesh(&vertices, &[[0, 1, 2], [3, 4, 5], [6, 7, 8]]);
+    let ray = CastRay { t_min: 3.0, ..down(-0.25, 0.125, 4.0) };
+    assert!(ExactCast::new(&hidden).margins(&ray, Sides::Both).surface.lo > 0.25);
+}
+
+#[test]
 fn a_surface_without_shared_vertices_is_still_one() {
     // One long edge on the left side, two short ones on the right: the three meet without a gap at x = 0.
     let vertices = [
