@@ -273,3 +273,23 @@ fn a_number_given_as_an_option_and_as_a_setting_is_refused() {
         assert!(message.contains(setting) && message.contains(name), "{message}");
     }
 }
+
+#[test]
+fn of_settings_of_one_value_the_last_holds_wherever_the_others_stand() {
+    let last_of = |texts: &[&str]| -> Vec<String> {
+        let settings = texts.iter().map(|text| Setting::parse(text).unwrap()).collect();
+        Setting::last_of(settings).iter().map(ToString::to_string).collect()
+    };
+    let apart = ["beam.fan_deg=60", "camera.focal_length_mm=8", "vehicle.heading_deg=5", "beam.fan_deg=70"];
+    assert_eq!(last_of(&apart), apart[1..]);
+    // All beams after one, and one after all: the second is a part of what the first sets.
+    assert_eq!(
+        last_of(&["beam.0.fan_deg=60", "camera.width_px=8", "beam.fan_deg=70"]),
+        ["camera.width_px=8", "beam.fan_deg=70"]
+    );
+    let part = ["beam.fan_deg=70", "camera.width_px=8", "beam.0.fan_deg=60"];
+    assert_eq!(last_of(&part), part);
+    // A focal length and a field of view say one thing.
+    let two_ways = ["camera.focal_length_mm=8", "camera.width_px=8", "camera.field_of_view_deg=50"];
+    assert_eq!(last_of(&two_ways), two_ways[1..]);
+}
