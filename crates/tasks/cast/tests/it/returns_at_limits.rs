@@ -9,7 +9,7 @@ use raypencil_referee::ExactCast;
 use raypencil_scene::pattern::{EchoLight, Keep, Mounting, PatternRays, Returns};
 use raypencil_scene::{CastRay, FaceId, NamedRaySet, Precision, Sides, Silent, Triangles};
 
-use super::clouds_of_others::{expect, of_frame};
+use super::cloud_trial::{expect, of_frame};
 
 const U: f64 = Precision::F32.unit_roundoff;
 
