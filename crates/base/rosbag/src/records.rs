@@ -21,15 +21,37 @@ pub(crate) const MAX_LISTED: usize = 8;
 
 /// Hands over the records of an MCAP file, those of chunks one by one.
 pub(crate) fn each_record(
-    mut stream: impl Read,
+    stream: impl Read,
     length: u64,
     mut take: impl FnMut(Record<'_>) -> Result<(), Fault>,
 ) -> Result<(), Fault> {
-    let broken =
-        |error: McapError| Fault::new("file", error.to_string(), "a whole MCAP file, as rosbag2 writes it");
     let most = length.saturating_mul(MAX_EXPANSION).min(MAX_RECORD_BYTES) as usize;
     let options =
         LinearReaderOptions::default().with_validate_chunk_crcs(true).with_record_length_limit(most);
+    each_of(stream, options.clone().with_emit_chunks(true), &mut |opcode, data| match opcode {
+        op::CHUNK => {
+            if !has_its_records(data)? {
+                return Err(broken("a record of a chunk is longer than the chunk"));
+            }
+            // The chunk alone, as a file.
+            let head = [&[op::CHUNK][..], &(data.len() as u64).to_le_bytes()].concat();
+            let alone = options.clone().with_skip_start_magic(true).with_skip_end_magic(true);
+            each_of(head.chain(data), alone, &mut |opcode, data| taken(opcode, data, &mut take))
+        }
+        opcode => taken(opcode, data, &mut take),
+    })
+}
+
+fn broken(found: impl std::fmt::Display) -> Fault {
+    Fault::new("file", found.to_string(), "a whole MCAP file, as rosbag2 writes it")
+}
+
+/// Hands over the records that a reader with these options finds.
+fn each_of(
+    mut stream: impl Read,
+    options: LinearReaderOptions,
+    take: &mut dyn FnMut(u8, &[u8]) -> Result<(), Fault>,
+) -> Result<(), Fault> {
     let mut reader = LinearReader::new_with_options(options);
     reader.add_decompressor(Zstandard::default()).map_err(broken)?;
     while let Some(event) = reader.next_event() {
@@ -38,18 +60,43 @@ pub(crate) fn each_record(
                 let read = stream.read(reader.insert(wanted));
                 reader.notify_read(read.map_err(|error| broken(McapError::Io(error)))?);
             }
-            LinearReadEvent::Record { data, opcode }
-                if matches!(opcode, op::SCHEMA | op::CHANNEL | op::MESSAGE) =>
-            {
-                if !has_its_texts(opcode, data) {
-                    return Err(broken(McapError::UnexpectedEof));
-                }
-                take(mcap::parse_record(opcode, data).map_err(broken)?)?;
-            }
-            LinearReadEvent::Record { .. } => {}
+            LinearReadEvent::Record { data, opcode } => take(opcode, data)?,
         }
     }
     Ok(())
+}
+
+/// Hands over a record if it is of a kind that bags are read by.
+fn taken(
+    opcode: u8,
+    data: &[u8],
+    take: &mut impl FnMut(Record<'_>) -> Result<(), Fault>,
+) -> Result<(), Fault> {
+    if !matches!(opcode, op::SCHEMA | op::CHANNEL | op::MESSAGE) {
+        return Ok(());
+    }
+    if !has_its_texts(opcode, data) {
+        return Err(broken(McapError::UnexpectedEof));
+    }
+    take(mcap::parse_record(opcode, data).map_err(broken)?)
+}
+
+/// Whether each record of a chunk that is not compressed lies within it: `mcap` goes on behind the chunk, or panics, if one says that it is
+/// longer.
+fn has_its_records(chunk: &[u8]) -> Result<bool, Fault> {
+    let Record::Chunk { header, data } = mcap::parse_record(op::CHUNK, chunk).map_err(broken)? else {
+        return Ok(false);
+    };
+    let mut rest = &data[..];
+    while header.compression.is_empty() && !rest.is_empty() {
+        // One byte of kind, eight of length.
+        let length =
+            rest.get(1..).and_then(|rest| rest.first_chunk()).map(|bytes| u64::from_le_bytes(*bytes));
+        let after = length.and_then(|length| usize::try_from(length).ok()?.checked_add(9));
+        let Some(after) = after.and_then(|after| rest.get(after..)) else { return Ok(false) };
+        rest = after;
+    }
+    Ok(true)
 }
 
 /// Whether the texts of a schema or of a channel are as long as they say: `mcap` makes room for what one claims, up to 4 GB, before it

@@ -192,3 +192,26 @@ fn texts_that_claim_more_than_their_record_has_are_refused_before_there_is_room_
         assert!(fault.contains("MCAP"), "{at}: {fault}");
     }
 }
+
+#[test]
+fn a_record_that_is_longer_than_its_chunk_is_refused() {
+    const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+    // A message, of which the chunk has so many bytes and which says another length; behind the chunk there are bytes enough.
+    let bag = |bytes: usize, length: u64| {
+        let message = [&[5][..], &length.to_le_bytes(), &vec![0; bytes]].concat();
+        let size = message.len() as u64;
+        let times = [0; 16];
+        let header = [&times[..], &size.to_le_bytes(), &[0; 4], &[0; 4], &size.to_le_bytes()].concat();
+        let chunk =
+            [&[6][..], &((header.len() + message.len()) as u64).to_le_bytes(), &header, &message].concat();
+        let footer = [&[2][..], &20_u64.to_le_bytes(), &[0; 20]].concat();
+        [MAGIC, &chunk, &footer, MAGIC].concat()
+    };
+    let refused = |bytes, length| read(&bag(bytes, length), None, None).expect_err("no poses");
+    let longer = "file: a record of a chunk is longer than the chunk; expected a whole MCAP file, as rosbag2 writes it";
+    for (bytes, length) in [(22, 23), (22, 40), (22, u64::MAX), (22, u64::MAX - 8), (0, 1)] {
+        assert_eq!(refused(bytes, length), longer, "{length} for {bytes} bytes");
+    }
+    // Of the length that it says, it is a message of a channel that is not there.
+    assert!(!refused(22, 22).contains("longer than the chunk"), "{}", refused(22, 22));
+}
