@@ -363,10 +363,10 @@ def goals(grounds: dict[str, int], times: Times, costs: Times) -> str:
             1.5,
             f"{{}} {embree}",
             ratio("first", "exact"),
-            f"Asking for any hit alone takes {min(walk):.0f} to {max(walk):.0f} % of it: the walk through the boxes is more than all of Embree's time. Its nodes "
-            "have four boxes, and its tree halves the faces by their number. Nodes of eight boxes that one instruction of AVX2 asks, in a "
-            "tree that is cut by surface area, are what the tracer has. Then t: its double-doubles are formed for one ray after the "
-            "other, and could be for four in lanes.",
+            f"Asking for any hit alone takes {min(walk):.0f} to {max(walk):.0f} % of it: the walk through the boxes is the most. Tried: the same program "
+            "compiled for AVX2 is no quicker, and to seek the nearest box instead of sorting all is slower. So it is not the arithmetic of a step "
+            "but what it decides, and that it waits. Fewer steps would help: a tree that is cut by surface area, where ours halves the faces by "
+            "their number. Then t: its pairs of f64 are formed for one ray after the other, and could be for four in lanes.",
         ),
         (
             "`tracer`: face and t",
@@ -374,7 +374,7 @@ def goals(grounds: dict[str, int], times: Times, costs: Times) -> str:
             f"{{}} {embree}",
             ratio("first", "`tracer`"),
             "It has nodes of eight boxes, but asks the faces of a leaf one by one in f64, and rays one after the other: each waits for its memory. "
-            "Leaves of four faces that f32 refuses together, and eight rays that take turns, as the exact answers have them.",
+            "Leaves of four faces that f32 refuses together, and eight rays that take turns and fetch ahead, as the exact answers have them.",
         ),
         ("any hit, exact", 1.2, f"{{}} {embree}", ratio("any", "exact"), "The walk, as of first hits."),
         (
@@ -411,7 +411,7 @@ def goals(grounds: dict[str, int], times: Times, costs: Times) -> str:
         cells.append([what, asked, form.format(measured), "met" if is_met else "missed"])
         if would_take and not is_met:
             left.append(f"* **{what}**: {would_take}")
-    return "\n\n".join([table(["work", "goal", "measured", ""], cells), *(["What it would take; none of it was tried:", "\n".join(left)] if left else [])])
+    return "\n\n".join([table(["work", "goal", "measured", ""], cells), *(["What it would take; nothing of it was tried that is not called so:", "\n".join(left)] if left else [])])
 
 
 def main() -> None:
