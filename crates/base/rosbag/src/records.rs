@@ -46,11 +46,14 @@ fn broken(found: impl std::fmt::Display) -> Fault {
     Fault::new("file", found.to_string(), "a whole MCAP file, as rosbag2 writes it")
 }
 
+/// Gets the kind of a record, and its bytes.
+type TakeRecord<'t> = dyn FnMut(u8, &[u8]) -> Result<(), Fault> + 't;
+
 /// Hands over the records that a reader with these options finds.
 fn each_of(
     mut stream: impl Read,
     options: LinearReaderOptions,
-    take: &mut dyn FnMut(u8, &[u8]) -> Result<(), Fault>,
+    take: &mut TakeRecord<'_>,
 ) -> Result<(), Fault> {
     let mut reader = LinearReader::new_with_options(options);
     reader.add_decompressor(Zstandard::default()).map_err(broken)?;
