@@ -45,15 +45,6 @@ impl<T> Reading<T> {
         }
     }
 
-    /// The same with a reference to what is hit.
-    pub fn as_ref(&self) -> Reading<&T> {
-        match self {
-            Self::Hit(hit) => Reading::Hit(hit),
-            Self::TooNear => Reading::TooNear,
-            Self::Miss => Reading::Miss,
-        }
-    }
-
     /// The same with another value for the hit.
     pub fn map<U>(self, of: impl FnOnce(T) -> U) -> Reading<U> {
         match self {

@@ -43,6 +43,7 @@
 //! The folders, from the numbers up to the answers. None uses one that stands below it in this list:
 //!
 //! ```text
+//! lanes       what the processor has beyond safe code: fused operations, hints to memory
 //! numbers     intervals, exact dyadic rationals, pairs of f64 with a proven error; their correct rounding
 //! trees       boxes of a hierarchy: the faces that a ray may meet
 //! rays        the contract's rays, multiplied by their denominators, and rays displaced from them

@@ -328,7 +328,11 @@ fn first_of(
 ) -> (Vec<Reading<FirstHit>>, DecidedCounts) {
     let (mut first, mut decided) = (vec![Reading::Miss; rays.len()], DecidedCounts::default());
     exact.first_meetings(rays, sides, |index, read, decided_by| {
-        first[index] = read.as_ref().map(|(meeting, ties)| first_hit(meeting, *ties));
+        first[index] = match read {
+            Reading::Hit((meeting, ties)) => Reading::Hit(first_hit(meeting, *ties)),
+            Reading::TooNear => Reading::TooNear,
+            Reading::Miss => Reading::Miss,
+        };
         decided.add(decided_by);
     });
     (first, decided)

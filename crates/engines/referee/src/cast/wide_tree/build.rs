@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use raypencil_scene::Triangles;
 
-use super::{EMPTY, Frame, LEAF, LEAF_WIDTH, Leaf, NO_FACES, Node, Triangle, WIDTH, down, up};
+use super::{EMPTY, Frame, LEAF, LEAF_WIDTH, Leaf, NO_FACES, Node, Triangle, WIDTH, WideTree, down, up};
 
 /// A face as the build orders it.
 #[derive(Debug, Clone, Copy)]
@@ -45,17 +45,25 @@ struct Source<'s> {
     frame: &'s Frame,
 }
 
-/// The nodes, the root first, and the leaves of a hierarchy of these faces, of which there is one at least.
-pub(super) fn build(mesh: &Triangles, faces: &[Triangle], frame: &Frame) -> (Vec<Node>, Vec<Leaf>) {
-    let item = |(place, face): (usize, &Triangle)| Item::of(frame, place as u32, face);
-    let mut items: Vec<Item> = faces.par_iter().enumerate().map(item).collect();
-    let count = items.len().div_ceil(LEAF_WIDTH);
-    // A root has a node in any case.
-    let mut nodes = vec![EMPTY; nodes_of(count).max(1)];
-    let mut leaves = vec![NO_FACES; count];
-    let whole = Part { items: &mut items, nodes: &mut nodes, leaves: &mut leaves, node: 0, leaf: 0 };
-    whole.fill(&Source { mesh, faces, frame });
-    (nodes, leaves)
+impl WideTree {
+    /// The hierarchy of these faces of a mesh, built on all threads. It does not depend on their number, nor on the order of
+    /// the faces.
+    pub(in super::super) fn of(mesh: &Triangles, faces: &[Triangle]) -> Self {
+        if faces.is_empty() {
+            let frame = Frame { middle: DVec3::ZERO, scale: 1.0 };
+            return Self { nodes: Vec::new(), leaves: Vec::new(), frame };
+        }
+        let frame = Frame::of(faces);
+        let item = |(place, face): (usize, &Triangle)| Item::of(&frame, place as u32, face);
+        let mut items: Vec<Item> = faces.par_iter().enumerate().map(item).collect();
+        let count = items.len().div_ceil(LEAF_WIDTH);
+        // A root has a node in any case.
+        let mut nodes = vec![EMPTY; nodes_of(count).max(1)];
+        let mut leaves = vec![NO_FACES; count];
+        let whole = Part { items: &mut items, nodes: &mut nodes, leaves: &mut leaves, node: 0, leaf: 0 };
+        whole.fill(&Source { mesh, faces, frame: &frame });
+        Self { nodes, leaves, frame }
+    }
 }
 
 /// How many leaves each child of a node of `leaves` leaves has: as few children as can have hierarchies one node less deep, for their

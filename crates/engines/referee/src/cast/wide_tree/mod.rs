@@ -37,7 +37,7 @@ mod walk;
 
 use glam::{BVec4A, DVec3, Vec4};
 use rayon::prelude::*;
-use raypencil_scene::{FaceId, Triangles};
+use raypencil_scene::FaceId;
 
 use super::triangle::Triangle;
 
@@ -150,20 +150,6 @@ impl Frame {
     #[inline]
     fn of_point(&self, point: DVec3) -> DVec3 {
         (point - self.middle) * self.scale
-    }
-}
-
-impl WideTree {
-    /// The hierarchy of these faces of a mesh, built on all threads. It does not depend on their number, nor on the order of
-    /// the faces.
-    pub(super) fn of(mesh: &Triangles, faces: &[Triangle]) -> Self {
-        if faces.is_empty() {
-            let frame = Frame { middle: DVec3::ZERO, scale: 1.0 };
-            return Self { nodes: Vec::new(), leaves: Vec::new(), frame };
-        }
-        let frame = Frame::of(faces);
-        let (nodes, leaves) = build::build(mesh, faces, &frame);
-        Self { nodes, leaves, frame }
     }
 }
 
