@@ -23,13 +23,21 @@ pub struct CloudConventions<'a> {
 /// What a candidate declares of its arrays.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct CandidateConventions<'a> {
-    /// A number that means "no hit" in `face`, `t` and `range`; of a cloud in all three coordinates. NaN and +Inf, and faces of -1 or 4294967295, always do. -Inf in
-    /// `t` and `range` says that what is hit is too near, unless it is this number.
+    /// A number that means "no hit" in `t` and `range`, and in `face` where neither of them says that the ray hits; of a cloud in all
+    /// three coordinates. Files of fewer digits hold it rounded. NaN and +Inf, and faces of -1 or 4294967295, always mean "no hit". -Inf
+    /// in `t` and `range` says that what is hit is too near, unless it is this number.
     pub miss: Option<f64>,
     /// Leave out `face.npy`.
     pub ignores_faces: bool,
     /// Of a point cloud.
     pub cloud: CloudConventions<'a>,
+}
+
+impl CandidateConventions<'_> {
+    /// Whether a number, which storing may have moved by `error`, is the one that means "no hit".
+    pub(super) fn means_miss(&self, number: f64, error: f64) -> bool {
+        self.miss.is_some_and(|miss| number == miss || (number - miss).abs() <= error)
+    }
 }
 
 /// Reads what a folder has of `face.npy`, `t.npy`, `range.npy`, `side.npy`, `point.npy`, `normal.npy`, `barycentric.npy`
@@ -44,19 +52,24 @@ pub fn read_candidate(
 ) -> Result<Stated, FileError> {
     refuse_file(folder)?;
     let reader = Reader { folder, shape, count: shape.iter().product() };
-    let is_miss = |number: f64| !number.is_finite() || Some(number) == conventions.miss;
     let distance = |name: &str| -> Result<Stored<f64>, FileError> {
         let (numbers, errors) = reader.numbers(name, &[])?;
         let distances = numbers.map(|numbers| {
-            let said = |number: f64| match number {
-                number if Some(number) == conventions.miss => f64::INFINITY,
+            let said = |(ray, number): (usize, f64)| match number {
+                number if conventions.means_miss(number, error_of(&errors, ray)) => f64::INFINITY,
                 f64::NEG_INFINITY => number,
-                number if is_miss(number) => f64::INFINITY,
+                number if number.is_nan() => f64::INFINITY,
                 number => number,
             };
-            numbers.into_iter().map(said).collect()
+            numbers.into_iter().enumerate().map(said).collect()
         });
         Ok((distances, errors))
+    };
+    let ((t, of_t), (range, of_range)) = (distance("t")?, distance("range")?);
+    // A distance says itself which rays hit: a face is then no number for "no hit", whatever its index.
+    let hits = |ray: usize| {
+        let length = t.as_ref().or(range.as_ref());
+        length.is_some_and(|length: &Vec<f64>| length[ray].is_finite())
     };
     let vectors = |name: &str| -> Result<Stored<DVec3>, FileError> {
         let (numbers, errors) = reader.numbers(name, &[3])?;
@@ -66,19 +79,21 @@ pub fn read_candidate(
     let none = [-1.0, f64::from(u32::MAX), f64::from(u32::MAX as f32)];
     let face = match conventions.ignores_faces {
         true => None,
-        false => reader.numbers("face", &[])?.0.map(|numbers| {
-            let face = |(cell, number): (usize, f64)| match number {
-                number if is_miss(number) || none.contains(&number) => Ok(None),
+        false => {
+            let (numbers, errors) = reader.numbers("face", &[])?;
+            let face = |(ray, number): (usize, f64)| match number {
+                number if !number.is_finite() || none.contains(&number) => Ok(None),
+                number if !hits(ray) && conventions.means_miss(number, error_of(&errors, ray)) => Ok(None),
                 number if number.fract() == 0.0 && (0.0..f64::from(u32::MAX)).contains(&number) => {
                     Ok(Some(FaceId(number as u32)))
                 }
                 number => {
                     let expected = "0 or a larger whole number; -1 or 4294967295 for no hit";
-                    Err(reader.fault("face", format!("cell {cell}"), number.to_string(), expected))
+                    Err(reader.fault("face", format!("cell {ray}"), number.to_string(), expected))
                 }
             };
-            numbers.into_iter().enumerate().map(face).collect::<Result<Vec<_>, _>>()
-        }),
+            numbers.map(|numbers| numbers.into_iter().enumerate().map(face).collect::<Result<Vec<_>, _>>())
+        }
     }
     .transpose()?;
     let side = reader.numbers("side", &[])?.0.map(|numbers| {
@@ -89,7 +104,6 @@ pub fn read_candidate(
         };
         numbers.into_iter().map(side).collect()
     });
-    let ((t, of_t), (range, of_range)) = (distance("t")?, distance("range")?);
     let ((point, of_point), (normal, of_normal)) = (vectors("point")?, vectors("normal")?);
     let (barycentric, of_barycentric) = vectors("barycentric")?;
     let (cos_incidence, of_cos_incidence) = reader.numbers("cos_incidence", &[])?;
@@ -142,6 +156,11 @@ fn refuse_file(path: &Path) -> Result<(), FileError> {
 
 /// Values, and how far storing may have moved each of them.
 type Stored<T> = (Option<Vec<T>>, Option<Vec<f64>>);
+
+/// How far storing may have moved the value of a ray.
+fn error_of(errors: &Option<Vec<f64>>, ray: usize) -> f64 {
+    errors.as_ref().map_or(0.0, |errors| errors[ray])
+}
 
 /// How far storing may have moved the parts of each value: half a unit in the last place of the largest. `None`: numbers of double
 /// precision and whole numbers are what was computed.

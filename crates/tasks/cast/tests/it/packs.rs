@@ -424,6 +424,30 @@ fn a_number_for_no_hit_must_be_declared() {
 }
 
 #[test]
+fn a_declared_number_is_no_face_of_rays_that_hit_and_is_rounded_as_it_is_stored() {
+    let declared = |miss| CandidateConventions { miss: Some(miss), ..CandidateConventions::default() };
+    let with = |miss: f64| {
+        let of = move |_: usize, length: f64| if length.is_finite() { length } else { miss };
+        Folders::right().change("t", of).change("range", of)
+    };
+    let faces = Folders::right().of("face");
+    for miss in [0.0, 3.0, 11.0] {
+        assert!(faces.contains(&miss), "no ray hits face {miss}");
+        let checked = with(miss).check_by(Precision::F64, declared(miss));
+        assert!(checked.passes(), "{miss}: {:?}", checked.comparison.wrong().next());
+        // Nor where a distance alone has the number.
+        assert!(with(miss).without(&["range"]).check_by(Precision::F64, declared(miss)).passes());
+    }
+    for (miss, is_half) in [(1e30, false), (0.1, false), (-999.9, false), (0.1, true), (-999.9, true)] {
+        let stored = || with(miss).store(is_half, 0, &["t", "range"]);
+        assert!(stored().check_by(Precision::F64, declared(miss)).passes(), "{miss}, half {is_half}");
+        // A unit of the last place beside it is a distance.
+        let beside = with(miss).store(is_half, 1, &["t"]).check_by(Precision::F64, declared(miss));
+        assert!(!beside.passes(), "{miss}, half {is_half}");
+    }
+}
+
+#[test]
 fn errors_without_a_rule_are_not_explained() {
     let checked = Folders::right().change("t", |index, t| t + 1e-3 * (index % 7) as f64).check();
     assert!(!checked.passes() && checked.why.is_none());

@@ -117,8 +117,9 @@ pub(in crate::pack) fn read_cloud_of<'a>(
     };
     let count = cloud.len();
     let points: Vec<DVec3> = (0..count).map(|k| DVec3::new(x.values[k], y.values[k], z.values[k])).collect();
-    let is_miss = |point: DVec3| conventions.miss.is_some_and(|miss| point == DVec3::splat(miss));
-    let is_point: Vec<bool> = points.iter().map(|&point| point.is_finite() && !is_miss(point)).collect();
+    let is_miss =
+        |k: usize| [x, y, z].iter().all(|axis| conventions.means_miss(axis.values[k], axis.error(k)));
+    let is_point: Vec<bool> = (0..count).map(|k| points[k].is_finite() && !is_miss(k)).collect();
     let real = is_point.iter().filter(|&&is_point| is_point).count();
     let places = beams.map_or(1, Beams::places);
     let shape_of_beams = if places > 1 { &shape[..shape.len() - 1] } else { shape };
@@ -197,9 +198,9 @@ pub(in crate::pack) fn read_cloud_of<'a>(
     }
     let ranges = cloud.column("range").filter(|column| column.storage != CloudStorage::Whole).map(|column| {
         let of = |of: &Option<usize>| {
-            of.map_or((f64::NAN, 0.0), |k| match conventions.miss {
-                Some(miss) if column.values[k] == miss => (f64::INFINITY, 0.0),
-                _ => (column.values[k], column.error(k)),
+            of.map_or((f64::NAN, 0.0), |k| match conventions.means_miss(column.values[k], column.error(k)) {
+                true => (f64::INFINITY, 0.0),
+                false => (column.values[k], column.error(k)),
             })
         };
         found.point_of.iter().map(of).unzip()
