@@ -151,15 +151,17 @@ impl Heading {
         }
     }
 
-    /// A heading in one of the comments before the first line of numbers, as NumPy's `savetxt` writes it. Other comments are none.
-    fn of_comments(bytes: &[u8]) -> Option<Self> {
+    /// The heading in the comments before the first line of numbers, as NumPy's `savetxt` writes it. Other comments are none; but one
+    /// that is meant as a heading must be one.
+    fn of_comments(bytes: &[u8]) -> Result<Option<Self>, Fault> {
         let lines = bytes.split(|byte| *byte == b'\n').zip(1..);
         let before = lines.take_while(|(line, _)| line.starts_with(b"#") || line.trim_ascii().is_empty());
-        let heading = |(line, number): (&[u8], u64)| {
-            let text = std::str::from_utf8(line).ok()?.trim_start_matches('#');
-            Self::of(text.split(',').map(str::trim), number).ok()
+        let words = |(line, number): (&[u8], u64)| {
+            let words = words_of_heading(std::str::from_utf8(line).ok()?)?;
+            Some((words, number))
         };
-        before.filter_map(heading).last()
+        let last = before.filter_map(words).last();
+        last.map(|(words, line)| Self::of(words.iter().map(String::as_str), line)).transpose()
     }
 
     /// The numbers of a ray from those of a row; what has no column is left at what it is without.
@@ -170,15 +172,35 @@ impl Heading {
     }
 }
 
+/// The words of a comment that is meant as a heading: as many as a ray has numbers, whatever stands between them, and some of them are its
+/// names, but for a unit.
+fn words_of_heading(comment: &str) -> Option<Vec<String>> {
+    let text = comment.trim_start_matches('#').trim();
+    let separators: &[char] = if text.contains([',', ';']) { &[',', ';'] } else { &[' ', '\t'] };
+    let words: Vec<String> = text
+        .split(separators)
+        .map(|word| word.trim().trim_matches(['"', '\'']).trim().to_string())
+        .filter(|word| separators.contains(&',') || !word.is_empty())
+        .collect();
+    let without_unit = |word: &str| word.split([' ', '[', '(', '/']).next().unwrap_or_default().to_string();
+    let is_name = |word: &&String| NAMES.iter().any(|name| without_unit(word).eq_ignore_ascii_case(name));
+    // A unit is one word; a comment that says what the columns are has more.
+    let is_short = words.iter().all(|word| word.split_whitespace().count() <= 2);
+    let is_heading = (MIN_NAMES..=NAMES.len()).contains(&words.len()) && is_short;
+    (is_heading && words.iter().filter(is_name).count() >= MIN_NAMES / 2).then_some(words)
+}
+
 fn of_csv(bytes: &[u8], file: &Path) -> Result<RayArray, FileError> {
     let in_file = |fault: Fault| FileError::Array(fault.in_file(file));
+    // The mark that some editors put before a text in UTF-8.
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
         .from_reader(bytes);
-    let mut heading = Heading::of_comments(bytes);
+    let mut heading = Heading::of_comments(bytes).map_err(in_file)?;
     let mut width = heading.as_ref().map(|heading| (heading.places.len(), heading.line));
     let (mut rays, mut numbers, mut is_first) = (Vec::new(), Vec::new(), true);
     for record in reader.records() {

@@ -72,6 +72,17 @@ fn a_heading_names_the_columns() {
     // NumPy's savetxt writes its heading as a comment; other comments are none.
     assert_eq!(ray("# by me\n# dx,dy,dz,ox,oy,oz\n4,5,6,1,2,3"), plain);
     assert_eq!(ray("# dx,dy,dz\n1,2,3,4,5,6\n# dx,dy,dz,ox,oy,oz\n"), plain);
+    let prose = "# rays: ox, oy, oz are the origin, dx, dy, dz the direction\n1,2,3,4,5,6";
+    assert_eq!(ray(prose), plain);
+    // Whatever stands between the names and around them, and before the whole text.
+    for heading in
+        ["# \"dx\",\"dy\",\"dz\",\"ox\",\"oy\",\"oz\"", "# dx;dy;dz;ox;oy;oz", "#dx dy\tdz  ox oy oz"]
+    {
+        assert_eq!(ray(&format!("{heading}\n4,5,6,1,2,3")), plain, "{heading}");
+        assert_eq!(ray(&format!("\u{feff}{heading}\r\n4,5,6,1,2,3")), plain, "{heading} behind a mark");
+    }
+    assert_eq!(ray("\u{feff}dx,dy,dz,ox,oy,oz\n4,5,6,1,2,3"), plain);
+    assert_eq!(ray("\u{feff}1,2,3,4,5,6"), plain);
 }
 
 #[test]
@@ -102,6 +113,12 @@ fn each_wrong_file_is_told_where_it_is_wrong() {
         (
             b"a,b,c,d,e,f\n0,0,0,0,0,1".to_vec(),
             "rays: line 1: \"a\"; expected a heading of the names ox,oy,oz,dx,dy,dz, and if wanted t_min,t_max,t_blind, in any order",
+        ),
+        (b"# dx,dy,dz,ox,oy,oy\n0,0,0,0,0,1".to_vec(), "rays: line 1: oy twice; expected a heading"),
+        (b"# dx,dy,dz,x,y,z\n0,0,0,0,0,1".to_vec(), "rays: line 1: \"x\"; expected a heading"),
+        (
+            b"# dx,dy,dz,ox [m],oy [m],oz [m]\n0,0,0,0,0,1".to_vec(),
+            "rays: line 1: \"ox [m]\"; expected a heading",
         ),
         (b"\nox,oy,oz,dx,dy\n".to_vec(), "rays: line 2: no dz; expected a heading of the names"),
         (b"ox,oy,oz,dx,dy,dz,dx\n".to_vec(), "rays: line 1: dx twice; expected a heading of the names"),
