@@ -364,8 +364,8 @@ def goals(grounds: dict[str, int], times: Times, costs: Times) -> str:
             f"{{}} {embree}",
             ratio("first", "exact"),
             f"Asking for any hit alone takes {min(walk):.0f} to {max(walk):.0f} % of it: the walk through the boxes is the most. Tried: the same program "
-            "compiled for AVX2 is no quicker, and to seek the nearest box instead of sorting all is slower. So it is not the arithmetic of a step "
-            "but what it decides, and that it waits. Fewer steps would help: a tree that is cut by surface area, where ours halves the faces by "
+            "compiled for AVX2 is no quicker, and to seek the nearest box instead of sorting all is slower. So it seems to be less "
+            "the arithmetic of a step than what it decides, and that it waits. Fewer steps would help: a tree that is cut by surface area, where ours halves the faces by "
             "their number. Then t: its pairs of f64 are formed for one ray after the other, and could be for four in lanes.",
         ),
         (
