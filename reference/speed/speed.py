@@ -154,7 +154,7 @@ TRACER = (
 )
 GOALS = {
     "camera, `tracer` / Embree, packets": (1.0, True, TRACER),
-    "beams, `tracer` / Embree, packets": (1.0, True, TRACER),
+    "beams, `tracer` / Embree, packets": (1.0, True, "As of the camera."),
     "returns, `tracer` / shadow rays alone, Embree, single": (
         1.0,
         True,
@@ -168,7 +168,7 @@ GOALS = {
         False,
         "Both renderers form every quantity of every pixel, and both are compared; which of the three takes how much was not looked at.",
     ),
-    "a whole pack of the own mesh, ms": (3000.0, False, "Margins are half of it (docs/evidence/speed.md has what they would take)."),
+    "a whole pack of the own mesh, ms": (3000.0, False, "How much of it the margins take was not looked at; docs/evidence/speed.md has what quicker ones would take."),
     "peak memory at 16,000,000 faces, bytes a face": (100.0, False, "Which arrays make it up was not listed."),
 }
 
