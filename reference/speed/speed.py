@@ -149,7 +149,7 @@ def scaled(program: str) -> tuple[list[str], float | None]:
 
 #: What is asked of whom, whether as much at least or at most, and what it would take where it is missed.
 TRACER = (
-    "It asks faces in f64, in lanes of four; Embree's packets ask them in f32, in lanes of sixteen. A test in f32 with a proven bound, "
+    "It asks faces in f64, in lanes of four; Embree's packets ask them in f32, sixteen rays at once. A test in f32 with a proven bound, "
     "as the exact answers of any rays have it, would leave few faces to f64."
 )
 GOALS = {
