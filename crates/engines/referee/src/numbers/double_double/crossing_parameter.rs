@@ -20,8 +20,8 @@
 
 use glam::DVec3;
 
-use super::plane_crossing::{ERROR, LEAST, MOST, Pair, UNDERFLOW, normal_of, pair_product, size, sum};
-use super::{DoubleDouble, ROUNDED_UP, fast_two_sum, two_product, two_sum};
+use super::plane_crossing::{Differences, ERROR, Pair, UNDERFLOW, dot, fits, normal_of, size, sum};
+use super::{DoubleDouble, ROUNDED_UP, fast_two_sum, two_product};
 use crate::lanes::{Work, run};
 
 /// 64 u.
@@ -49,14 +49,8 @@ impl Work for Crossing {
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Option<DoubleDouble> {
-        let Self { origin, direction, corners: [a, b, c] } = self;
-        let minus = |p: DVec3, q: DVec3| [0, 1, 2].map(|k: usize| two_sum(p[k], -q[k]));
-        let [ab, ac, offset] = [minus(b, a), minus(c, a), minus(a, origin)];
-        let (long, far, fast) = (size(&ab).max(size(&ac)), size(&offset), direction.abs().max_element());
-        let fits = |size: f64| (LEAST..MOST).contains(&size);
-        if !(fits(long) && fits(far) && fits(fast)) {
-            return None;
-        }
+        let Self { origin, direction, corners } = self;
+        let Differences { ab, ac, offset, long, fast, .. } = Differences::of(origin, direction, corners)?;
         let normal = normal_of::<FUSED>(&ab, &ac);
         let first = |of: &[Pair; 3]| DVec3::new(of[0].0, of[1].0, of[2].0);
         let approach = first(&normal).dot(direction);
@@ -72,8 +66,7 @@ impl Work for Crossing {
             let (product, rest) = two_product::<FUSED>(t, direction[k]);
             sum(offset[k], (-product, -rest))
         });
-        let [x, y, z] = [0, 1, 2].map(|k: usize| pair_product::<FUSED>(normal[k], beside[k]));
-        let rest = sum(sum(x, y), z).0;
+        let (rest, _) = dot::<FUSED>(&normal, &beside);
         let of_rest = ERROR * area * size(&beside) + UNDERFLOW + f64::EPSILON * rest.abs();
         let more = rest / approach;
         if !(more.abs() <= t.abs()) {

@@ -22,8 +22,8 @@ use crate::lanes::{Work, run};
 pub(super) const ERROR: f64 = 1.0 / (1_u128 << 98) as f64;
 
 pub(super) const UNDERFLOW: f64 = 1e-190;
-pub(super) const LEAST: f64 = 1e-20;
-pub(super) const MOST: f64 = 1e20;
+const LEAST: f64 = 1e-20;
+const MOST: f64 = 1e20;
 
 /// hi + lo.
 pub(super) type Pair = (f64, f64);
@@ -40,35 +40,26 @@ impl PlaneCrossing {
     /// That of the ray from `origin` along `direction` and a face with these corners; `None` if a size is out of bounds, and where a
     /// number may be exactly 0, of which no error but 0 would do.
     pub(crate) fn of(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> Option<Self> {
-        run(Crossing { origin, direction, corners: [a, b, c] })
+        run(Planes { origin, direction, corners: [a, b, c] })
     }
 }
 
-struct Crossing {
+struct Planes {
     origin: DVec3,
     direction: DVec3,
     corners: [DVec3; 3],
 }
 
-impl Work for Crossing {
+impl Work for Planes {
     type Output = Option<PlaneCrossing>;
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Option<PlaneCrossing> {
-        let Self { origin, direction, corners: [a, b, c] } = self;
-        let minus = |p: DVec3, q: DVec3| [0, 1, 2].map(|k: usize| two_sum(p[k], -q[k]));
-        let [ab, ac, offset] = [minus(b, a), minus(c, a), minus(a, origin)];
-        let (long, far, fast) = (size(&ab).max(size(&ac)), size(&offset), direction.abs().max_element());
-        let fits = |size: f64| (LEAST..MOST).contains(&size);
-        if !(fits(long) && fits(far) && fits(fast)) {
-            return None;
-        }
+        let Differences { ab, ac, offset, long, far, fast } =
+            Differences::of(self.origin, self.direction, self.corners)?;
         let normal = normal_of::<FUSED>(&ab, &ac);
-        let dot = |with: [Pair; 3]| {
-            let [x, y, z] = [0, 1, 2].map(|k: usize| pair_product::<FUSED>(normal[k], with[k]));
-            sum(sum(x, y), z)
-        };
-        let (height, approach) = (dot(offset), dot(direction.to_array().map(|part| (part, 0.0))));
+        let height = dot::<FUSED>(&normal, &offset);
+        let approach = dot::<FUSED>(&normal, &self.direction.to_array().map(|part| (part, 0.0)));
         if normal.iter().chain([&height, &approach]).any(|(high, _)| *high == 0.0) {
             return None;
         }
@@ -80,6 +71,33 @@ impl Work for Crossing {
             approach: of(approach, area * fast),
         })
     }
+}
+
+/// b - a, c - a and a', exactly, and the sizes E, A and D of the bounds.
+pub(super) struct Differences {
+    pub(super) ab: [Pair; 3],
+    pub(super) ac: [Pair; 3],
+    pub(super) offset: [Pair; 3],
+    pub(super) long: f64,
+    pub(super) far: f64,
+    pub(super) fast: f64,
+}
+
+impl Differences {
+    /// `None` if a size is out of bounds.
+    #[inline(always)]
+    pub(super) fn of(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> Option<Self> {
+        let minus = |p: DVec3, q: DVec3| [0, 1, 2].map(|k: usize| two_sum(p[k], -q[k]));
+        let [ab, ac, offset] = [minus(b, a), minus(c, a), minus(a, origin)];
+        let (long, far, fast) = (size(&ab).max(size(&ac)), size(&offset), direction.abs().max_element());
+        (fits(long) && fits(far) && fits(fast)).then_some(Self { ab, ac, offset, long, far, fast })
+    }
+}
+
+/// Whether the bounds hold for numbers of this size.
+#[inline(always)]
+pub(super) fn fits(size: f64) -> bool {
+    (LEAST..MOST).contains(&size)
 }
 
 /// The largest part.
@@ -98,6 +116,12 @@ pub(super) fn normal_of<const FUSED: bool>(ab: &[Pair; 3], ac: &[Pair; 3]) -> [P
     [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
+#[inline(always)]
+pub(super) fn dot<const FUSED: bool>(a: &[Pair; 3], b: &[Pair; 3]) -> Pair {
+    let [x, y, z] = [0, 1, 2].map(|k: usize| pair_product::<FUSED>(a[k], b[k]));
+    sum(sum(x, y), z)
+}
+
 /// AccurateDWPlusDW.
 #[inline(always)]
 pub(super) fn sum(a: Pair, b: Pair) -> Pair {
@@ -108,7 +132,7 @@ pub(super) fn sum(a: Pair, b: Pair) -> Pair {
 }
 
 #[inline(always)]
-pub(super) fn pair_product<const FUSED: bool>(a: Pair, b: Pair) -> Pair {
+fn pair_product<const FUSED: bool>(a: Pair, b: Pair) -> Pair {
     let (high, rest) = two_product::<FUSED>(a.0, b.0);
     fast_two_sum(high, rest + (a.0 * b.1 + a.1 * b.0))
 }
