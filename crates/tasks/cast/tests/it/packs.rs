@@ -438,12 +438,23 @@ fn a_declared_number_is_no_face_of_rays_that_hit_and_is_rounded_as_it_is_stored(
         // Nor where a distance alone has the number.
         assert!(with(miss).without(&["range"]).check_by(Precision::F64, declared(miss)).passes());
     }
-    for (miss, is_half) in [(1e30, false), (0.1, false), (-999.9, false), (0.1, true), (-999.9, true)] {
-        let stored = || with(miss).store(is_half, 0, &["t", "range"]);
-        assert!(stored().check_by(Precision::F64, declared(miss)).passes(), "{miss}, half {is_half}");
-        // A unit of the last place beside it is a distance.
-        let beside = with(miss).store(is_half, 1, &["t"]).check_by(Precision::F64, declared(miss));
-        assert!(!beside.passes(), "{miss}, half {is_half}");
+    // Each with a unit of its last place as it is stored. The last is nearly half a unit from what is stored of it.
+    let ulp = |exponent: i32| libm::scalbn(1.0, exponent);
+    for (miss, is_half, unit) in [
+        (1e30, false, ulp(76)),
+        (0.1, false, ulp(-27)),
+        (-999.9, false, ulp(-14)),
+        (0.1, true, ulp(-14)),
+        (-999.9, true, ulp(-1)),
+        (7.0 + 0.98 * ulp(-22), false, ulp(-21)),
+    ] {
+        // Distances alone say which rays hit.
+        let passes = |stored: f64| {
+            let folders = with(stored).store(is_half, 0, &["t", "range"]).without(&["face"]);
+            folders.check_by(Precision::F64, declared(miss)).passes()
+        };
+        assert!(passes(miss), "{miss}, half {is_half}");
+        assert!(!passes(miss + unit), "a unit beside {miss}, half {is_half}");
     }
 }
 
