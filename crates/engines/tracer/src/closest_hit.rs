@@ -145,7 +145,7 @@ impl Visitor for TileSeeker<'_> {
     fn leaf(&mut self, entries: Range<usize>, bundle_far: &mut f32) -> Next {
         let Self { faces, tile, nearest, far } = self;
         for triangle in &faces[entries] {
-            let face = SeenFace::new(triangle, tile);
+            let face = SeenFace::new(triangle.corners(), tile);
             if tile.misses_front(&face) {
                 continue;
             }

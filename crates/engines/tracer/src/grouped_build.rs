@@ -8,6 +8,7 @@
 //!
 //! The groups do not depend on one another, so threads build them side by side. Equal boxes of a group are built as one.
 
+use std::ops::Range;
 use std::time::Duration;
 
 use glam::Vec3A;
@@ -48,6 +49,22 @@ pub(crate) struct Group {
     pub(crate) faces: Vec<u32>,
 }
 
+impl Group {
+    /// The ranges of faces of all leaves below the root.
+    pub(crate) fn leaves(&self) -> Vec<Range<u32>> {
+        let (mut leaves, mut left) = (Vec::new(), vec![0]);
+        while let Some(node) = left.pop() {
+            let Bvh2Node { first_index, prim_count, .. } = self.nodes[node as usize];
+            if prim_count > 0 {
+                leaves.push(first_index..first_index + prim_count);
+            } else {
+                left.extend([first_index, first_index + 1]);
+            }
+        }
+        leaves
+    }
+}
+
 /// The trees of all groups, and the tree above them.
 pub(crate) struct Forest {
     /// The root first; empty if there is no box. The leaf `k..k + 1` is the tree of group k.
@@ -75,6 +92,16 @@ impl Forest {
             join(&mut upper, 0, members.len(), &mut roots.into_iter().enumerate());
         }
         Self { upper, groups }
+    }
+
+    /// The same with leaves of up to `most` faces, wherever so few are below a node.
+    pub(crate) fn with_leaves_of(mut self, most: usize) -> Self {
+        self.groups.par_iter_mut().for_each(|group| {
+            let mut faces = Vec::with_capacity(group.faces.len());
+            gather(group, 0, most, &mut faces);
+            group.faces = faces;
+        });
+        self
     }
 
     /// The faces of all groups, and for each group the first of its own among them.
@@ -140,6 +167,22 @@ fn build_group(boxes: &[Aabb], members: &[Member]) -> Group {
         (leaf.first_index, leaf.prim_count) = (first as u32, (faces.len() - first) as u32);
     }
     Group { nodes: tree.nodes, faces }
+}
+
+/// Appends the faces below a node to `gathered`, and makes it a leaf if they are few.
+fn gather(group: &mut Group, node: usize, most: usize, gathered: &mut Vec<u32>) {
+    let Bvh2Node { first_index, prim_count, .. } = group.nodes[node];
+    let (first, below) = (gathered.len(), first_index as usize);
+    if prim_count > 0 {
+        gathered.extend_from_slice(&group.faces[below..below + prim_count as usize]);
+    } else {
+        gather(group, below, most, gathered);
+        gather(group, below + 1, most, gathered);
+    }
+    let count = gathered.len() - first;
+    if prim_count > 0 || count <= most {
+        (group.nodes[node].first_index, group.nodes[node].prim_count) = (first as u32, count as u32);
+    }
 }
 
 /// Moves the `middle` boxes with the lowest centres to the front. The centres are compared along the axis on which they

@@ -35,3 +35,21 @@ pub(crate) fn run<W: Work>(instructions: Instructions, work: W) -> W::Output {
     let _ = instructions;
     work.run()
 }
+
+/// Asks memory for a value that will be needed soon, and does not wait for it. Nothing is read.
+#[allow(unsafe_code, reason = "a hint to the processor, which reads nothing")]
+#[inline(always)]
+pub(crate) fn fetch<T>(value: &T) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        const LINE: usize = 64;
+        let start = std::ptr::from_ref(value).cast::<i8>();
+        for line in 0..size_of::<T>().div_ceil(LINE) {
+            // SAFETY: the address lies within the value, and is not read.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(LINE * line)) };
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = value;
+}

@@ -69,7 +69,7 @@ mod traced_ray;
 mod triangle;
 mod wide_tree;
 
-pub use cast::{CastTraverser, TracedHit, TracerCast};
+pub use cast::{CastTraverser, TracedHit, TracedMeeting, TracerCast};
 pub use lanes::Instructions;
 pub use renderer::Tracer;
 

@@ -161,7 +161,7 @@ impl Visitor for Seeker<'_> {
     fn leaf(&mut self, entries: Range<usize>, _: &mut f32) -> Next {
         let Self { faces, tile, lines, open } = self;
         for triangle in &faces[entries] {
-            let face = SeenFace::new(triangle, tile);
+            let face = SeenFace::new(triangle.corners(), tile);
             if tile.misses(&face) {
                 continue;
             }

@@ -23,7 +23,7 @@
 use glam::{DVec3, Vec3A};
 
 use crate::traced_ray::TracedRay;
-use crate::triangle::{Triangle, widen};
+use crate::triangle::Triangle;
 use crate::wide_tree::Bundle;
 
 /// Rays of a block.
@@ -37,6 +37,9 @@ pub(crate) const TILE: usize = BLOCK * BLOCKS;
 
 /// Relative to the lengths of two vertices' offsets from the origin: 2^-43, derived above.
 const EDGE_MARGIN: f64 = 1.0 / (1u64 << 43) as f64;
+
+/// 2^-900: more than products lose that are too small for f64.
+const UNDERFLOW: f64 = f64::MIN_POSITIVE * (1_u128 << 122) as f64;
 
 /// A number for each ray of a block.
 pub(crate) type Lanes = [f64; BLOCK];
@@ -74,8 +77,8 @@ pub(crate) struct Tile {
     forward: f64,
     corners: Corners,
     /// Least and greatest components of their unit directions.
-    least: DVec3,
-    greatest: DVec3,
+    pub(crate) least: DVec3,
+    pub(crate) greatest: DVec3,
 }
 
 impl Tile {
@@ -253,18 +256,18 @@ pub(crate) struct SeenFace {
     /// How far below 0 an edge function must be to refuse the face for all rays between corners.
     margin: f64,
     /// The first vertex from the rays' origin, along x, y, z.
-    offset: DVec3,
+    pub(crate) offset: DVec3,
 }
 
 impl SeenFace {
     #[inline(always)]
-    pub(crate) fn new(triangle: &Triangle, tile: &Tile) -> Self {
+    pub(crate) fn new(vertices: [DVec3; 3], tile: &Tile) -> Self {
         let [kx, ky, kz] = tile.axes;
-        let offsets = triangle.vertices.map(|v| widen(v) - tile.origin);
+        let offsets = vertices.map(|v| v - tile.origin);
         let size = offsets.map(|v| v.abs()).iter().fold(DVec3::ZERO, |size, v| size.max(*v)).max_element();
         Self {
             seen: offsets.map(|v| [v[kx], v[ky], v[kz]]),
-            margin: EDGE_MARGIN * (size * size),
+            margin: EDGE_MARGIN * (size * size) + UNDERFLOW,
             offset: offsets[0],
         }
     }
@@ -274,9 +277,15 @@ impl Tile {
     /// The rays for the boxes, of which the longest is `far` metres long.
     #[inline(always)]
     pub(crate) fn bundle(&self, far: f32) -> Bundle {
+        self.bundle_from(self.origin, far)
+    }
+
+    /// The same where the boxes are moved, so that the rays start there.
+    #[inline(always)]
+    pub(crate) fn bundle_from(&self, start: DVec3, far: f32) -> Bundle {
         // Narrowing is monotonic too.
         let narrow = |v: DVec3| Vec3A::new(v.x as f32, v.y as f32, v.z as f32);
-        Bundle::new(narrow(self.origin), narrow(self.least), narrow(self.greatest), far)
+        Bundle::new(narrow(start), narrow(self.least), narrow(self.greatest), far)
     }
 
     /// Whether no ray of the tile meets the front of a face.
@@ -297,14 +306,19 @@ impl Tile {
         self.blocks[block].corners.miss_front(self.forward, &face.seen, face.margin)
     }
 
+    /// Whether no ray of a block meets a face.
+    #[inline(always)]
+    pub(crate) fn block_misses(&self, block: usize, face: &SeenFace) -> bool {
+        self.blocks[block].corners.miss(self.forward, &face.seen, face.margin)
+    }
+
     /// The rays of a block that pass inside all three edges of a face, or on them, whichever side it shows.
     #[inline(always)]
     pub(crate) fn inside(&self, block: usize, face: &SeenFace) -> u64 {
-        let rays = &self.blocks[block];
-        if rays.corners.miss(self.forward, &face.seen, face.margin) {
+        if self.block_misses(block, face) {
             return 0;
         }
-        let [ab, bc, ca] = self.block_edges(rays, face);
+        let [ab, bc, ca] = self.block_edges(block, face);
         let mut inside = [0_u64; BLOCK];
         for k in 0..BLOCK {
             let as_front = (ab[k] >= 0.0) & (bc[k] >= 0.0) & (ca[k] >= 0.0);
@@ -315,7 +329,8 @@ impl Tile {
     }
 
     #[inline(always)]
-    fn block_edges(&self, rays: &Block, face: &SeenFace) -> [Lanes; 3] {
+    pub(crate) fn block_edges(&self, block: usize, face: &SeenFace) -> [Lanes; 3] {
+        let rays = &self.blocks[block];
         let [kx, ky, kz] = self.axes;
         edge_functions(&rays.direction[kx], &rays.direction[ky], &rays.direction[kz], &face.seen)
     }
@@ -331,7 +346,7 @@ impl Tile {
         nearest: &mut Nearest,
     ) -> bool {
         let rays = &self.blocks[block];
-        let [ab, bc, ca] = self.block_edges(rays, face);
+        let [ab, bc, ca] = self.block_edges(block, face);
         let mut inside = [false; BLOCK];
         let mut any = false;
         for k in 0..BLOCK {
@@ -409,7 +424,7 @@ fn least_of(of: &Lanes) -> f64 {
 }
 
 #[inline(always)]
-fn greatest_of(of: &Lanes) -> f64 {
+pub(crate) fn greatest_of(of: &Lanes) -> f64 {
     let mut greatest = [f64::NEG_INFINITY; 4];
     for part in of.as_chunks::<4>().0 {
         for k in 0..4 {

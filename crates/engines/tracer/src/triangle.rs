@@ -45,9 +45,15 @@ impl Triangle {
         Self::new(mesh.faces()[face.0 as usize].map(|v| mesh.vertices()[v as usize]), face)
     }
 
+    /// The vertices in f64, exactly.
+    #[inline(always)]
+    pub(crate) fn corners(&self) -> [DVec3; 3] {
+        self.vertices.map(widen)
+    }
+
     /// The normal n = (b - a) x (c - a), scene frame, square metres; not a unit vector.
     pub(crate) fn normal(&self) -> DVec3 {
-        let [a, b, c] = self.vertices.map(widen);
+        let [a, b, c] = self.corners();
         (b - a).cross(c - a)
     }
 
@@ -74,7 +80,7 @@ impl Triangle {
 
     #[inline(always)]
     fn intersect<const BACKS: bool>(&self, ray: &TracedRay) -> Option<PlaneCrossing> {
-        intersect::<BACKS>(self.vertices.map(widen), ray)
+        intersect::<BACKS>(self.corners(), ray)
     }
 }
 

@@ -9,13 +9,17 @@
 //! derived for that single ray. An axis along which the rays run both ways does not limit the bundle.
 
 use bytemuck::Zeroable;
-use glam::Vec3A;
+use glam::{Vec3A, Vec4};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::node::Bvh2Node;
 use obvhs::ray::{Ray, safe_inverse};
 use rayon::prelude::*;
 
 use crate::grouped_build::Forest;
+
+mod steps;
+
+pub(crate) use steps::{At, Steps};
 
 /// Boxes of a node.
 const WIDTH: usize = 8;
@@ -47,6 +51,46 @@ const EMPTY: Node = Node {
     child: [LEAF; WIDTH],
     end: [0; WIDTH],
 };
+
+/// Which bounds of a node are entered along each axis; those three farther on are left.
+#[inline(always)]
+fn entered(inverse: &[f32; 3]) -> [usize; 3] {
+    [0, 1, 2].map(|axis: usize| if inverse[axis] > 0.0 { axis } else { axis + 3 })
+}
+
+impl Node {
+    /// Where a ray enters and leaves each box.
+    #[inline(always)]
+    fn passed(
+        &self,
+        origin: &[f32; 3],
+        inverse: &[f32; 3],
+        entered: &[usize; 3],
+        far: f32,
+    ) -> ([Vec4; 2], [Vec4; 2]) {
+        let mut enter = [Vec4::ZERO; 2];
+        let mut leave = [Vec4::splat(far); 2];
+        for axis in 0..3 {
+            let (first, last) = (&self.bounds[entered[axis]], &self.bounds[(entered[axis] + 3) % 6]);
+            let [origin, inverse] = [origin[axis], inverse[axis]].map(Vec4::splat);
+            for half in 0..2 {
+                let of = |bounds: &[f32; WIDTH]| (Vec4::from_slice(&bounds[4 * half..]) - origin) * inverse;
+                enter[half] = enter[half].max(of(first));
+                leave[half] = leave[half].min(of(last));
+            }
+        }
+        (enter, leave)
+    }
+}
+
+/// The numbers of two halves.
+#[inline(always)]
+fn joined([lower, upper]: [Vec4; 2]) -> [f32; WIDTH] {
+    let mut all = [0.0; WIDTH];
+    lower.write_to_slice(&mut all[..4]);
+    upper.write_to_slice(&mut all[4..]);
+    all
+}
 
 /// A tree of boxes; its leaves are ranges of the forest's faces.
 pub(crate) struct WideTree {
@@ -98,7 +142,7 @@ pub(crate) enum Next {
 }
 
 /// A node that waits, or a leaf, and where the bundle enters it.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Waiting {
     near: f32,
     child: u32,
@@ -106,8 +150,19 @@ pub(crate) struct Waiting {
 }
 
 impl WideTree {
-    /// Collapses the trees of `forest`, each group by itself. The faces of group k begin at `first_faces[k]`.
+    /// Collapses the trees of `forest`, each group by itself. The faces of group k begin at `first_faces[k]`; they are the entries.
     pub(crate) fn collapse(forest: &Forest, first_faces: &[u32]) -> Self {
+        Self::collapse_to(forest, |group, leaf| {
+            let face = first_faces[group] + leaf.first_index;
+            [face, face + leaf.prim_count]
+        })
+    }
+
+    /// The same where `entries` gives the first entry of a leaf of a group, and the end.
+    pub(crate) fn collapse_to(
+        forest: &Forest,
+        entries: impl Fn(usize, &Bvh2Node) -> [u32; 2] + Sync,
+    ) -> Self {
         if forest.upper.is_empty() {
             return Self { nodes: Box::default(), stack_size: 0 };
         }
@@ -128,10 +183,10 @@ impl WideTree {
         }
         let roots: Vec<u32> = parts.iter().map(|(_, _, _, first)| *first).collect();
         upper.fill(of_upper, &forest.upper, 0, |leaf| [roots[leaf.first_index as usize], 0]);
-        parts.into_par_iter().zip(first_faces).for_each(|((part, plan, group, first), first_face)| {
+        parts.into_par_iter().enumerate().for_each(|(k, (part, plan, group, first))| {
             plan.fill(part, &group.nodes, first, |leaf| {
-                let face = first_face + leaf.first_index;
-                [LEAF | face, face + leaf.prim_count]
+                let [first, end] = entries(k, leaf);
+                [LEAF | first, end]
             });
         });
         Self { nodes, stack_size: depth * WIDTH + 1 }
@@ -196,6 +251,7 @@ impl WideTree {
             return;
         }
         let (origin, inverse, mut far) = (ray.origin.to_array(), ray.inv_direction.to_array(), ray.tmax);
+        let entered = entered(&inverse);
         stack.clear();
         stack.push(Waiting { near: 0.0, child: 0, end: 0 });
         while let Some(Waiting { near, child, end }) = stack.pop() {
@@ -209,19 +265,8 @@ impl WideTree {
                 continue;
             }
             let node = &self.nodes[child as usize];
-            let mut enter = [0.0_f32; WIDTH];
-            let mut leave = [far; WIDTH];
-            for axis in 0..3 {
-                let (first, last) = if inverse[axis] > 0.0 { (axis, axis + 3) } else { (axis + 3, axis) };
-                let (first, last) = (&node.bounds[first], &node.bounds[last]);
-                for lane in 0..WIDTH {
-                    let to_first = (first[lane] - origin[axis]) * inverse[axis];
-                    let to_last = (last[lane] - origin[axis]) * inverse[axis];
-                    enter[lane] = if to_first > enter[lane] { to_first } else { enter[lane] };
-                    leave[lane] = if to_last < leave[lane] { to_last } else { leave[lane] };
-                }
-            }
-            Self::wait(node, &enter, &leave, stack);
+            let (enter, leave) = node.passed(&origin, &inverse, &entered, far);
+            Self::wait(node, &joined(enter), &joined(leave), stack);
         }
     }
 

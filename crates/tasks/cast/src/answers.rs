@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use raypencil_referee::{CastHit, CastMeeting, DecidedBy, ExactCast, Margins, SidedFace};
 use raypencil_scene::pattern::EchoLight;
 use raypencil_scene::{CastRay, FaceId, Progress, Reading, Side, Sides, Triangles};
-use raypencil_tracer::{CastTraverser, TracedHit, TracerCast};
+use raypencil_tracer::{TracedHit, TracerCast};
 
 /// What is asked beside the first hit.
 ///
@@ -164,14 +164,19 @@ impl Answers {
 
     /// The same with a tree that is there already.
     pub fn traced(tracer: &TracerCast, rays: &[CastRay], sides: Sides) -> Self {
-        let first = |traverser: &mut CastTraverser<'_>, ray: &CastRay| {
-            let hit = Reading::of(traverser.first(ray, sides), |hit| ray.is_too_near(hit.t));
-            hit.map(|hit| {
-                let TracedHit { face, side, t, range, point, normal, barycentric, cos_incidence } = hit;
-                FirstHit { face, side, ties: 1, t, range, point, normal, barycentric, cos_incidence }
-            })
+        let of_part = |part: &[CastRay]| {
+            let mut first = vec![Reading::Miss; part.len()];
+            tracer.traverser().first_of_each(part, sides, |index, met| {
+                let read = Reading::of(met, |met| part[index].is_too_near(met.t()));
+                first[index] = read.map(|met| {
+                    let TracedHit { face, side, t, range, point, normal, barycentric, cos_incidence } =
+                        *met.hit();
+                    FirstHit { face, side, ties: 1, t, range, point, normal, barycentric, cos_incidence }
+                });
+            });
+            first
         };
-        let first = rays.par_iter().map_init(|| tracer.traverser(), first).collect();
+        let first = rays.par_chunks(TRACED_RAYS_A_PART).flat_map_iter(of_part).collect();
         Self { first, any: None, all: None, margins: None, decided: None }
     }
 
@@ -302,6 +307,9 @@ fn each<T: Send>(rays: &[CastRay], answer: impl Fn(&CastRay) -> T + Sync + Send)
 /// Rays that one thread asks about by itself.
 const RAYS_A_PART: usize = 256;
 
+/// The same of the tracer, which learns from the first of them whether the others go quicker together.
+pub(crate) const TRACED_RAYS_A_PART: usize = 1024;
+
 fn any_exactly(exact: &ExactCast<'_>, rays: &[CastRay], sides: Sides) -> Vec<bool> {
     match rays.len() {
         0..=FEW_RAYS => exact.any_of(rays, sides),
@@ -310,14 +318,10 @@ fn any_exactly(exact: &ExactCast<'_>, rays: &[CastRay], sides: Sides) -> Vec<boo
 }
 
 fn any_traced(tracer: &TracerCast, rays: &[CastRay], sides: Sides) -> Vec<bool> {
-    let of_part = |part: &[CastRay]| {
-        // One stack for all of them.
-        let mut traverser = tracer.traverser();
-        part.iter().map(|ray| traverser.any(ray, sides)).collect::<Vec<_>>()
-    };
+    let of_part = |part: &[CastRay]| tracer.traverser().any_of_each(part, sides);
     match rays.len() {
         0..=FEW_RAYS => of_part(rays),
-        _ => rays.par_chunks(RAYS_A_PART).flat_map_iter(of_part).collect(),
+        _ => rays.par_chunks(TRACED_RAYS_A_PART).flat_map_iter(of_part).collect(),
     }
 }
 

@@ -3,9 +3,9 @@
 use rayon::join;
 use raypencil_referee::{CastMeeting, ExactCast};
 use raypencil_scene::{CastRay, Reading, Side, Sides};
-use raypencil_tracer::{TracedHit, TracerCast};
+use raypencil_tracer::{TracedMeeting, TracerCast};
 
-use crate::answers::{DecidedCounts, side_number};
+use crate::answers::{DecidedCounts, TRACED_RAYS_A_PART, side_number};
 
 /// Rays that one thread answers by itself.
 const RAYS_A_PART: usize = 256;
@@ -94,33 +94,33 @@ impl Hit for (CastMeeting<'_>, u32) {
     }
 }
 
-impl Hit for TracedHit {
+impl Hit for TracedMeeting<'_, '_> {
     fn face(&self) -> u32 {
-        self.face.0
+        self.face().0
     }
     fn met_side(&self) -> Side {
-        self.side
+        self.hit().side
     }
     fn ties(&self) -> u32 {
         1
     }
     fn t(&self) -> f64 {
-        self.t
+        self.t()
     }
     fn range(&self) -> f64 {
-        self.range
+        self.hit().range
     }
     fn cos_incidence(&self) -> f64 {
-        self.cos_incidence
+        self.hit().cos_incidence
     }
     fn point(&self) -> [f64; 3] {
-        self.point.to_array()
+        self.hit().point.to_array()
     }
     fn normal(&self) -> [f64; 3] {
-        self.normal.to_array()
+        self.hit().normal.to_array()
     }
     fn barycentric(&self) -> [f64; 3] {
-        self.barycentric
+        self.hit().barycentric
     }
 }
 
@@ -263,7 +263,11 @@ impl ColumnsPart<'_> {
     /// ```
     pub fn ask(mut self, caster: Caster<'_>, rays: &[CastRay], sides: Sides) -> ReadingCounts {
         assert_eq!(self.rays, rays.len(), "rays of a part of columns");
-        if rays.len() > RAYS_A_PART {
+        let most = match caster {
+            Caster::Referee(_) => RAYS_A_PART,
+            Caster::Tracer(_) => TRACED_RAYS_A_PART,
+        };
+        if rays.len() > most {
             let middle = rays.len() / 2;
             let (lower, upper) = self.split_at(middle);
             let (a, b) = join(
@@ -281,11 +285,10 @@ impl ColumnsPart<'_> {
                 });
             }
             Caster::Tracer(tracer) => {
-                let mut traverser = tracer.traverser();
-                for (index, ray) in rays.iter().enumerate() {
-                    let read = Reading::of(traverser.first(ray, sides), |hit| ray.is_too_near(hit.t));
+                tracer.traverser().first_of_each(rays, sides, |index, met| {
+                    let read = Reading::of(met, |met| rays[index].is_too_near(met.t()));
                     self.put(index, &read, &mut counts);
-                }
+                });
             }
         }
         counts

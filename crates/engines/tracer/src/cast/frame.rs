@@ -3,8 +3,9 @@
 //! # Padding
 //!
 //! In the scaled frame, moved to the middle of the mesh, the boxes lie within |x| <= 1. A ray is traced from the point in
-//! which it enters the box of all of them, so that both that point and all hits lie within 2 sqrt(3) < 3.5 of each other.
-//! By the bound of `hierarchy`, f32 traversal misses a box by at most 8 u (|P| + s) with u = 2^-24, |P| <= 1 and s <= 3.5.
+//! which it enters the box of all of them, so that both that point and all hits lie within 2 sqrt(3) < 3.5 of each other; rays
+//! from one point are traced from it if all boxes lie within [`MAX_WAY`] of it.
+//! By the bound of `hierarchy`, f32 traversal misses a box by at most 8 u (|P| + s) with u = 2^-24, |P| <= 1 and s <= [`MAX_WAY`].
 //! Two things come to it, both in f64:
 //!
 //! * moving a vertex to the middle: 2^-53 of its coordinate and of the middle's, charged as 2^-50 of the largest
@@ -27,8 +28,8 @@ const FEW_ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 /// Largest error of the point of entry that the boxes allow for: the origin is then 2^26 times as far away as the mesh is
 /// wide.
 const MAX_ENTRY_ERROR: f64 = U;
-/// Longest way inside the box of all faces.
-const MAX_WAY: f64 = 3.5;
+/// Longest way of a ray from where it is traced.
+const MAX_WAY: f64 = 6.0;
 
 /// How a mesh's coordinates become those in which rays are traced.
 #[derive(Debug, Clone, Copy)]
@@ -36,7 +37,7 @@ pub(super) struct Frame {
     /// A power of two: scaled coordinates per unit of the mesh.
     pub(super) scale: f64,
     /// The middle of the mesh, scaled.
-    middle: DVec3,
+    pub(super) middle: DVec3,
     /// Half the width of the box of all faces, scaled, with the padding of a face's box and as much again.
     half_width: DVec3,
     /// What is added to each side of a face's box.
@@ -53,7 +54,6 @@ pub(super) struct ScaledRay {
     pub(super) t_per_t: f64,
     /// A power of two: the length of one in the scaled frame, in the mesh's unit.
     pub(super) unit: f64,
-    pub(super) walk: Walk,
 }
 
 /// How the tree is walked.
@@ -73,9 +73,16 @@ const LEAST_OF_MESH: i32 = -300;
 const LEAST_OF_DIRECTION: i32 = -900;
 
 /// The power of two from which `size` is less than a factor of two away, upward; not below 2^least, nor above 2^300.
+#[inline]
 fn power_of_two_above(size: f64, least: i32) -> f64 {
-    let exponent = if size > 0.0 { libm::frexp(size).1 } else { 0 };
-    libm::scalbn(1.0, exponent.clamp(least, 300))
+    let exponent = if size.is_normal() {
+        (size.to_bits() >> (f64::MANTISSA_DIGITS - 1)) as i32 - (f64::MAX_EXP - 2)
+    } else if size > 0.0 {
+        libm::frexp(size).1
+    } else {
+        0
+    };
+    f64::from_bits(((exponent.clamp(least, 300) + f64::MAX_EXP - 1) as u64) << (f64::MANTISSA_DIGITS - 1))
 }
 
 impl Frame {
@@ -100,16 +107,33 @@ impl Frame {
     }
 
     /// A ray in this frame.
+    #[inline]
     pub(super) fn ray(&self, given: &CastRay) -> ScaledRay {
-        let shrink = 1.0 / power_of_two_above(given.direction.abs().max_element(), LEAST_OF_DIRECTION);
-        let ray = TracedRay::new(given.origin * self.scale, given.direction * shrink);
-        // o + t d, scaled: o scale + (t scale / shrink) (d shrink).
-        let t_per_t = shrink / self.scale;
-        let unit = 1.0 / self.scale;
-        ScaledRay { ray, t_per_t, unit, walk: self.walk(&ray, given.t_min / t_per_t, given.t_max / t_per_t) }
+        let (direction, t_per_t) = self.scaled_direction(given);
+        let ray = TracedRay::new(given.origin * self.scale, direction);
+        ScaledRay { ray, t_per_t, unit: 1.0 / self.scale }
     }
 
-    fn walk(&self, ray: &TracedRay, t_min: f64, t_max: f64) -> Walk {
+    /// Its direction in this frame, and t of the given ray per t of that one.
+    #[inline]
+    pub(super) fn scaled_direction(&self, given: &CastRay) -> (DVec3, f64) {
+        let shrink = 1.0 / power_of_two_above(given.direction.abs().max_element(), LEAST_OF_DIRECTION);
+        // o + t d, scaled: o scale + (t scale / shrink) (d shrink).
+        (given.direction * shrink, shrink / self.scale)
+    }
+
+    /// The point, where the boxes are, if rays from it can be traced from there: if no box is too far away.
+    pub(super) fn start(&self, origin: DVec3) -> Option<DVec3> {
+        let start = origin * self.scale - self.middle;
+        let is_near = FEW_ROUNDINGS * (start.abs().max_element() + self.largest) <= MAX_ENTRY_ERROR
+            && start.length() + self.half_width.length() <= MAX_WAY;
+        is_near.then_some(start)
+    }
+
+    /// How a ray goes through the tree.
+    pub(super) fn walk(&self, given: &CastRay, scaled: &ScaledRay) -> Walk {
+        let ray = &scaled.ray;
+        let (t_min, t_max) = (given.t_min / scaled.t_per_t, given.t_max / scaled.t_per_t);
         let start = ray.origin - self.middle;
         let unit = ray.direction / ray.metres_per_t;
         // Slabs in f64, around a box that is wider than those of the faces by far more than their rounding, unless the
@@ -142,7 +166,8 @@ impl Frame {
     }
 }
 
-/// The way from the point of entry to a hit at `range` from the origin, rounded up by more than its errors.
+/// The way from the point of entry to a hit at `range` from the origin, rounded up by more than its errors. Nothing is
+/// farther away than [`MAX_WAY`].
 pub(super) fn way_to(range: f64, entry: f64) -> f32 {
-    round_up((range - entry) * (1.0 + f64::EPSILON) + MAX_ENTRY_ERROR)
+    round_up(((range - entry) * (1.0 + f64::EPSILON) + MAX_ENTRY_ERROR).min(MAX_WAY))
 }

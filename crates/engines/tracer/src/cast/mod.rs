@@ -7,13 +7,21 @@
 //!
 //! ```text
 //! frame     the scaled frame, its boxes, and how wide these must be
-//! tracer    [`TracerCast`]: the tree; first, any and all hits
+//! quad      four faces at a time, asked in `f32`
+//! tracer    [`TracerCast`]: first, any and all hits
+//! packet    many rays from one point, together
 //! traced    a hit with its values
+//! tree      boxes, quads and faces of a mesh
+//! turns     many rays that share nothing
 //! ```
 
 mod frame;
+mod packet;
+mod quad;
 mod traced;
 mod tracer;
+mod tree;
+mod turns;
 
-pub use traced::TracedHit;
+pub use traced::{TracedHit, TracedMeeting};
 pub use tracer::{CastTraverser, TracerCast};

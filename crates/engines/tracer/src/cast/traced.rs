@@ -1,9 +1,11 @@
 //! A face as it is traced, and a hit with its values.
 
+use std::cell::OnceCell;
+
 use glam::DVec3;
 use raypencil_scene::{CastRay, FaceId, Side, Sides, Triangles};
 
-use super::frame::ScaledRay;
+use super::frame::{Frame, ScaledRay};
 use crate::triangle::{PlaneCrossing, intersect};
 
 /// A face in the scaled frame.
@@ -33,7 +35,7 @@ impl CastFace {
 
     /// The crossing of the ray with this face, within the ray's ends and on a side that counts.
     #[inline(always)]
-    pub(super) fn crossing(&self, given: &CastRay, scaled: &ScaledRay, sides: Sides) -> Option<Crossing> {
+    pub(super) fn crossing(&self, given: &CastRay, scaled: &ScaledRay, sides: Sides) -> Option<Crossing<'_>> {
         let crossing = intersect::<true>(self.corners, &scaled.ray)?;
         if crossing.n_dot_q == 0.0 || sides == Sides::Fronts && crossing.n_dot_q > 0.0 {
             return None;
@@ -41,20 +43,20 @@ impl CastFace {
         // -0 becomes 0: they are the same t, and are written the same.
         let scaled_t = crossing.n_dot_offset / crossing.n_dot_q + 0.0;
         let t = scaled_t * scaled.t_per_t;
-        (t >= given.t_min && t <= given.t_max).then_some(Crossing { face: *self, crossing, scaled_t, t })
+        (t >= given.t_min && t <= given.t_max).then_some(Crossing { face: self, crossing, scaled_t, t })
     }
 }
 
 /// A ray's crossing with a face.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Crossing {
-    pub(super) face: CastFace,
+pub(super) struct Crossing<'f> {
+    pub(super) face: &'f CastFace,
     crossing: PlaneCrossing,
     pub(super) scaled_t: f64,
     pub(super) t: f64,
 }
 
-impl Crossing {
+impl Crossing<'_> {
     /// Whether this crossing is reported rather than `other`: it is nearer, or as near with a lower face index.
     pub(super) fn is_before(&self, other: &Self) -> bool {
         self.t < other.t || (self.t == other.t && self.face.id < other.face.id)
@@ -80,6 +82,42 @@ impl Crossing {
             barycentric,
             cos_incidence: -normal.dot(scaled.ray.direction) / scaled.ray.metres_per_t,
         }
+    }
+}
+
+/// The face that a ray meets first, whose values are formed when they are asked for.
+#[derive(Debug, Clone)]
+pub struct TracedMeeting<'t, 'r> {
+    face: &'t CastFace,
+    t: f64,
+    ray: &'r CastRay,
+    frame: &'t Frame,
+    hit: OnceCell<TracedHit>,
+}
+
+impl<'t, 'r> TracedMeeting<'t, 'r> {
+    pub(super) fn new(face: &'t CastFace, t: f64, ray: &'r CastRay, frame: &'t Frame) -> Self {
+        Self { face, t, ray, frame, hit: OnceCell::new() }
+    }
+
+    /// The face; of several at the same t, the lowest index.
+    pub fn face(&self) -> FaceId {
+        self.face.id
+    }
+
+    /// The ray's parameter.
+    pub fn t(&self) -> f64 {
+        self.t
+    }
+
+    /// Every value.
+    pub fn hit(&self) -> &TracedHit {
+        self.hit.get_or_init(|| {
+            let scaled = self.frame.ray(self.ray);
+            let crossing =
+                self.face.crossing(self.ray, &scaled, Sides::Both).expect("the ray meets the face");
+            crossing.hit(self.ray, &scaled)
+        })
     }
 }
 

@@ -1,22 +1,22 @@
-//! The tree of a mesh for any rays, and its traversals.
+//! Any rays on a mesh: one, and many.
 
 use std::ops::Range;
 
-use obvhs::ray::Ray as BoxRay;
-use rayon::prelude::*;
-use raypencil_scene::{CastRay, FaceId, RaySet, Sides, Triangles};
+use raypencil_scene::{CastRay, Sides, Triangles};
 
-use super::frame::{Frame, ScaledRay, Walk, way_to};
-use super::traced::{CastFace, Crossing, TracedHit};
-use crate::grouped_build::Forest;
-use crate::lanes::{self, Instructions, Work};
-use crate::wide_tree::{self, Visitor, Waiting, WideTree};
+use super::frame::{ScaledRay, Walk, way_to};
+use super::packet::{Packet, how_many_together};
+use super::quad::Sheared;
+use super::traced::{CastFace, Crossing, TracedHit, TracedMeeting};
+use super::tree::CastTree;
+use super::turns;
+use crate::wide_tree::{self, Visitor, Waiting};
 
 /// Any rays on a mesh, traced in `f64`.
 ///
 /// ```
 /// use glam::DVec3;
-/// use raypencil_scene::{CastRay, FaceId, Sides, Triangles};
+/// use raypencil_scene::{CastRay, Sides, Triangles};
 /// use raypencil_tracer::TracerCast;
 ///
 /// // A triangle at z = 1, its front up.
@@ -30,50 +30,37 @@ use crate::wide_tree::{self, Visitor, Waiting, WideTree};
 /// ```
 #[derive(Debug)]
 pub struct TracerCast {
-    frame: Frame,
-    boxes: WideTree,
-    /// In the order of the boxes' entries.
-    faces: Vec<CastFace>,
+    tree: CastTree,
 }
 
 impl TracerCast {
     /// Builds the tree.
     pub fn new(mesh: &Triangles) -> Self {
-        let frame = Frame::of(mesh);
-        let face = |index| CastFace::of(mesh, FaceId(index), frame.scale);
-        let box_of = |index| {
-            let face = face(index);
-            face.has_area().then(|| frame.padded_box(face.corners))
-        };
-        let forest = Forest::build(mesh.faces().len(), box_of);
-        let (order, first_faces) = forest.faces();
-        let boxes = WideTree::collapse(&forest, &first_faces);
-        Self { boxes, faces: order.into_par_iter().map(face).collect(), frame }
+        Self { tree: CastTree::new(mesh) }
     }
 
     /// A traversal with its own stack, for many rays on one thread.
     pub fn traverser(&self) -> CastTraverser<'_> {
-        CastTraverser { cast: self, stack: self.boxes.stack() }
-    }
-
-    /// The first hit of each ray of a set, on all threads; also one that is [too near](CastRay::is_too_near) for a sensor.
-    pub fn first_of(&self, set: &RaySet) -> Vec<Option<TracedHit>> {
-        let first = |traverser: &mut CastTraverser<'_>, ray| traverser.first(ray, set.sides());
-        set.rays().par_iter().map_init(|| self.traverser(), first).collect()
+        CastTraverser { tree: &self.tree, stack: self.tree.boxes.stack(), packet: None }
     }
 }
 
 /// A traversal with its own stack.
 pub struct CastTraverser<'t> {
-    cast: &'t TracerCast,
+    tree: &'t CastTree,
     stack: Vec<Waiting>,
+    /// There once many rays were asked about.
+    packet: Option<Box<Packet>>,
 }
 
 impl std::fmt::Debug for CastTraverser<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("CastTraverser").field("cast", self.cast).finish_non_exhaustive()
+        f.debug_struct("CastTraverser").field("tree", self.tree).finish_non_exhaustive()
     }
 }
+
+/// So many packets are not formed after one that did not pay. Tuned.
+const PACKETS_LEFT_OUT: u32 = 15;
 
 /// What a face makes of a walk.
 enum Next {
@@ -85,13 +72,95 @@ enum Next {
     Stop,
 }
 
-impl CastTraverser<'_> {
+impl<'t> CastTraverser<'t> {
+    /// The first hits of many rays, which is quicker than one after the other, above all where they start in one point: `each`
+    /// gets the index of every ray, in no particular order, and what [`first`](Self::first) would give.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use raypencil_scene::{CastRay, Sides, Triangles};
+    /// use raypencil_tracer::TracerCast;
+    ///
+    /// let corners = vec![[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0]];
+    /// let cast = TracerCast::new(&Triangles::new(corners, vec![[0, 1, 2]])?);
+    /// let rays = [1.0, 5.0].map(|x| CastRay::new(DVec3::new(x, 2.0, 3.0), DVec3::NEG_Z));
+    /// let mut hits = [None; 2];
+    /// cast.traverser().first_of_each(&rays, Sides::Both, |k, met| hits[k] = met.map(|met| met.t()));
+    /// assert_eq!(hits, [Some(2.0), None]);
+    /// # Ok::<(), raypencil_scene::SceneError>(())
+    /// ```
+    pub fn first_of_each<'r>(
+        &mut self,
+        rays: &'r [CastRay],
+        sides: Sides,
+        mut each: impl FnMut(usize, Option<TracedMeeting<'t, 'r>>),
+    ) {
+        self.seek_each(rays, (sides, false), &mut |index, met| {
+            each(index, met.map(|(face, t)| TracedMeeting::new(face, t, &rays[index], &self.tree.frame)));
+        });
+    }
+
+    /// Whether each of many rays meets anything.
+    pub fn any_of_each(&mut self, rays: &[CastRay], sides: Sides) -> Vec<bool> {
+        let mut any = vec![false; rays.len()];
+        self.seek_each(rays, (sides, true), &mut |index, met| any[index] = met.is_some());
+        any
+    }
+
+    /// The nearest hit of each ray, or if `any` is enough any hit. Rays that go together are asked as a packet as long as that pays,
+    /// and else one by one, since what one needs the next finds at hand; all others take turns.
+    fn seek_each(
+        &mut self,
+        rays: &[CastRay],
+        (sides, any): (Sides, bool),
+        each: &mut dyn FnMut(usize, Option<(&'t CastFace, f64)>),
+    ) {
+        let tree = self.tree;
+        let in_turns = |range: Range<usize>, each: &mut dyn FnMut(usize, Option<(&'t CastFace, f64)>)| {
+            turns::nearest_of_each(tree, &rays[range.clone()], (sides, any), &mut |index, met| {
+                each(range.start + index, met.map(|met| (met.face, met.t)));
+            });
+        };
+        let (mut alone, mut one_by_one) = (0..0, 0);
+        while alone.end < rays.len() {
+            let at = alone.end;
+            let count = how_many_together(&rays[at..]);
+            if count == 0 {
+                alone.end += 1;
+                continue;
+            }
+            in_turns(alone, each);
+            alone = at + count..at + count;
+            let together = &rays[at..at + count];
+            let packet = self.packet.get_or_insert_with(|| Box::new(Packet::EMPTY));
+            if one_by_one == 0 && packet.seek(tree, &mut self.stack, together, sides) {
+                one_by_one = if packet.was_worth_it() { 0 } else { PACKETS_LEFT_OUT };
+                for lane in 0..count {
+                    let nearest = packet.nearest(lane);
+                    each(at + lane, nearest.map(|(place, t)| (&tree.faces[place], t)));
+                }
+                continue;
+            }
+            one_by_one = one_by_one.max(1) - 1;
+            for (k, ray) in together.iter().enumerate() {
+                each(at + k, self.nearest(ray, sides).map(|met| (met.face, met.t)));
+            }
+        }
+        in_turns(alone, each);
+    }
+
     /// The nearest hit, also one that is [too near](CastRay::is_too_near) for a sensor; of several at the same t, that of the
     /// lowest face.
     pub fn first(&mut self, ray: &CastRay, sides: Sides) -> Option<TracedHit> {
-        let scaled = self.cast.frame.ray(ray);
-        let mut nearest: Option<Crossing> = None;
+        let scaled = self.tree.frame.ray(ray);
+        self.nearest(ray, sides).map(|crossing| crossing.hit(ray, &scaled))
+    }
+
+    fn nearest(&mut self, ray: &CastRay, sides: Sides) -> Option<Crossing<'t>> {
+        let scaled = self.tree.frame.ray(ray);
+        let mut nearest: Option<Crossing<'t>> = None;
         self.walk(
+            ray,
             &scaled,
             #[inline(always)]
             |face| {
@@ -103,14 +172,15 @@ impl CastTraverser<'_> {
                 Next::UpTo(crossing.scaled_t)
             },
         );
-        nearest.map(|crossing| crossing.hit(ray, &scaled))
+        nearest
     }
 
     /// Whether the ray meets anything.
     pub fn any(&mut self, ray: &CastRay, sides: Sides) -> bool {
-        let scaled = self.cast.frame.ray(ray);
+        let scaled = self.tree.frame.ray(ray);
         let mut is_met = false;
         self.walk(
+            ray,
             &scaled,
             #[inline(always)]
             |face| {
@@ -123,9 +193,10 @@ impl CastTraverser<'_> {
 
     /// All hits in the order of t, and at the same t in that of the faces.
     pub fn all(&mut self, ray: &CastRay, sides: Sides) -> Vec<TracedHit> {
-        let scaled = self.cast.frame.ray(ray);
+        let scaled = self.tree.frame.ray(ray);
         let mut met = Vec::new();
         self.walk(
+            ray,
             &scaled,
             #[inline(always)]
             |face| {
@@ -139,9 +210,9 @@ impl CastTraverser<'_> {
 
     /// Shows the faces that the ray may meet, until one says that it is enough.
     #[inline]
-    fn walk(&mut self, scaled: &ScaledRay, mut visit: impl FnMut(&CastFace) -> Next) {
-        let TracerCast { boxes, faces, .. } = self.cast;
-        match scaled.walk {
+    fn walk(&mut self, given: &CastRay, scaled: &ScaledRay, mut visit: impl FnMut(&'t CastFace) -> Next) {
+        let CastTree { boxes, faces, .. } = self.tree;
+        match self.tree.frame.walk(given, scaled) {
             Walk::Nothing => {}
             Walk::AllFaces => {
                 for face in faces {
@@ -151,51 +222,41 @@ impl CastTraverser<'_> {
                 }
             }
             Walk::Tree { box_ray, entry } => {
-                let seeker = Seeker { faces, entry, range_per_t: scaled.ray.metres_per_t, visit };
-                let walk = TreeWalk { boxes, stack: &mut self.stack, box_ray, seeker };
-                lanes::run(Instructions::Detected, walk);
+                let sheared = Sheared::new(&scaled.ray, &box_ray);
+                let mut seeker =
+                    Seeker { tree: self.tree, sheared, entry, range_per_t: scaled.ray.metres_per_t, visit };
+                boxes.walk_ray(&mut self.stack, &box_ray, &mut seeker);
             }
         }
     }
 }
 
 /// Shows the faces in leaves.
-struct Seeker<'a, V> {
-    faces: &'a [CastFace],
+struct Seeker<'t, V> {
+    tree: &'t CastTree,
+    sheared: Sheared,
     entry: f64,
     /// Scaled.
     range_per_t: f64,
     visit: V,
 }
 
-impl<V: FnMut(&CastFace) -> Next> Visitor for Seeker<'_, V> {
+impl<'t, V: FnMut(&'t CastFace) -> Next> Visitor for Seeker<'t, V> {
     #[inline(always)]
     fn leaf(&mut self, entries: Range<usize>, far: &mut f32) -> wide_tree::Next {
-        for face in &self.faces[entries] {
-            match (self.visit)(face) {
-                Next::On => {}
-                Next::UpTo(t) => *far = way_to(t * self.range_per_t, self.entry),
-                Next::Stop => return wide_tree::Next::Stop,
+        for quad in &self.tree.quads[entries] {
+            let mut left = quad.may_meet(&self.sheared);
+            while left != 0 {
+                let face = &self.tree.faces[quad.first as usize + left.trailing_zeros() as usize];
+                left &= left - 1;
+                match (self.visit)(face) {
+                    Next::On => {}
+                    Next::UpTo(t) => *far = way_to(t * self.range_per_t, self.entry),
+                    Next::Stop => return wide_tree::Next::Stop,
+                }
             }
         }
         wide_tree::Next::On
-    }
-}
-
-/// A walk of one ray.
-struct TreeWalk<'a, V> {
-    boxes: &'a WideTree,
-    stack: &'a mut Vec<Waiting>,
-    box_ray: BoxRay,
-    seeker: Seeker<'a, V>,
-}
-
-impl<V: FnMut(&CastFace) -> Next> Work for TreeWalk<'_, V> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(mut self) {
-        self.boxes.walk_ray(self.stack, &self.box_ray, &mut self.seeker);
     }
 }
 

@@ -2,15 +2,15 @@
 
 use glam::DVec3;
 use proptest::prelude::*;
-use raypencil_scene::Side;
+use raypencil_scene::{FaceId, Side};
 
 use super::*;
 
 /// All crossings of a ray by asking every face.
-fn exhaustive(cast: &TracerCast, ray: &CastRay, sides: Sides) -> Vec<Crossing> {
-    let scaled = cast.frame.ray(ray);
-    let mut met: Vec<Crossing> =
-        cast.faces.iter().filter_map(|face| face.crossing(ray, &scaled, sides)).collect();
+fn exhaustive<'t>(cast: &'t TracerCast, ray: &CastRay, sides: Sides) -> Vec<Crossing<'t>> {
+    let scaled = cast.tree.frame.ray(ray);
+    let mut met: Vec<Crossing<'t>> =
+        cast.tree.faces.iter().filter_map(|face| face.crossing(ray, &scaled, sides)).collect();
     met.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.face.id.cmp(&b.face.id)));
     met
 }
@@ -53,6 +53,7 @@ fn compare_with_exhaustive(
     let mesh = Triangles::new(vertices, faces).unwrap();
     let cast = TracerCast::new(&mesh);
     let mut traverser = cast.traverser();
+    let mut rays = Vec::new();
     for (k, &(from, weights, exponent, length)) in aims.iter().enumerate() {
         let [a, b, c] = mesh.corners(FaceId((k % corners.len()) as u32));
         // A corner, a point of an edge, a point of the face.
@@ -71,10 +72,10 @@ fn compare_with_exhaustive(
         if k % 4 == 3 {
             (ray.t_min, ray.t_max) = (0.5 / length, 1.5 / length);
         }
-        walks.count(cast.frame.ray(&ray).walk);
+        walks.count(cast.tree.frame.walk(&ray, &cast.tree.frame.ray(&ray)));
         for sides in [Sides::Both, Sides::Fronts] {
             let expected = exhaustive(&cast, &ray, sides);
-            let scaled = cast.frame.ray(&ray);
+            let scaled = cast.tree.frame.ray(&ray);
             let all: Vec<TracedHit> = expected.iter().map(|crossing| crossing.hit(&ray, &scaled)).collect();
             prop_assert_eq!(traverser.all(&ray, sides), all.clone());
             prop_assert_eq!(traverser.first(&ray, sides), all.first().copied());
@@ -84,8 +85,70 @@ fn compare_with_exhaustive(
                 prop_assert!(all.iter().all(|hit| hit.side == Side::Front));
             }
         }
+        rays.push(ray);
+    }
+    compare_many(&cast, &rays)
+}
+
+/// Asks many rays at once, and each against every face.
+fn compare_many(cast: &TracerCast, rays: &[CastRay]) -> Result<(), TestCaseError> {
+    for sides in [Sides::Both, Sides::Fronts] {
+        let first = |ray: &CastRay| {
+            exhaustive(cast, ray, sides)
+                .first()
+                .map(|met| *TracedMeeting::new(met.face, met.t, ray, &cast.tree.frame).hit())
+        };
+        let expected: Vec<Option<TracedHit>> = rays.iter().map(first).collect();
+        let mut told = vec![None; rays.len()];
+        cast.traverser().first_of_each(rays, sides, |index, met| {
+            assert!(told[index].is_none());
+            told[index] = Some(met.map(|met| (met.face(), met.t(), *met.hit())));
+        });
+        let expected_told =
+            expected.iter().map(|hit| Some(hit.map(|hit| (hit.face, hit.t, hit)))).collect::<Vec<_>>();
+        prop_assert_eq!(told, expected_told);
+        let any: Vec<bool> = expected.iter().map(Option::is_some).collect();
+        prop_assert_eq!(cast.traverser().any_of_each(rays, sides), any);
     }
     Ok(())
+}
+
+/// A sheet of bumps of 2 x 2 sizes around `place`, each third face twice, of so many squares along a side.
+fn sheet(size: f64, place: DVec3, side: u32) -> Triangles {
+    let bump = |i: u32, j: u32| f64::from((i * 7 + j * 13) % 5) / 40.0;
+    let part = |i: u32| 2.0 * f64::from(i) / f64::from(side) - 1.0;
+    let vertex = |k: u32| {
+        let (i, j) = (k / (side + 1), k % (side + 1));
+        (place + size * DVec3::new(part(i), part(j), bump(i, j))).to_array()
+    };
+    let faces = |k: u32| {
+        let at = k / side * (side + 1) + k % side;
+        let [a, b, c, d] = [at, at + side + 1, at + side + 2, at + 1];
+        let mut faces = vec![[a, b, c], [a, c, d]];
+        if k.is_multiple_of(3) {
+            faces.push([c, a, b]);
+        }
+        faces
+    };
+    Triangles::new((0..(side + 1).pow(2)).map(vertex).collect(), (0..side * side).flat_map(faces).collect())
+        .unwrap()
+}
+
+/// Rays from `eye` sizes above the middle, so many in a row, that aim along a line of the sheet between these two points; every
+/// fifth one ends or begins halfway.
+fn fan(size: f64, place: DVec3, eye: DVec3, [from, to]: [DVec3; 2], count: u32, length: f64) -> Vec<CastRay> {
+    let ray = |k: u32| {
+        let aim = from + (to - from) * (f64::from(k) / f64::from(count));
+        let direction = (DVec3::new(aim.x, aim.y, 0.05) - eye) * size * length;
+        let mut ray = CastRay::new(place + eye * size, direction);
+        match k % 10 {
+            3 => ray.t_max = 0.5 / length,
+            8 => ray.t_min = 0.5 / length,
+            _ => {}
+        }
+        ray
+    };
+    (0..count).map(ray).collect()
 }
 
 proptest! {
@@ -107,6 +170,113 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_packet_has_the_bits_of_its_rays(
+        exponent in -60_i32..60,
+        moved in prop_oneof![Just(0.0), Just(1.0), Just(1e6)],
+        direction in within_one(),
+        side in 1_u32..16,
+        eye in (within_one(), 0.01_f64..4.0),
+        row in [within_one(), within_one()],
+        count in 1_u32..150,
+        length in prop_oneof![Just(1.0), Just(1e-9), Just(1e9)],
+    ) {
+        let size = libm::scalbn(1.0, exponent);
+        let place = direction * moved * size;
+        let cast = TracerCast::new(&sheet(size, place, side));
+        let eye = DVec3::new(eye.0.x, eye.0.y, eye.1);
+        compare_many(&cast, &fan(size, place, eye, row, count, length))?;
+    }
+}
+
+#[test]
+fn rays_go_as_packets_while_that_pays() {
+    // Few large faces, from above: a packet. Rays over corners too, where a packet meets several faces.
+    let rays = fan(
+        1.0,
+        DVec3::ZERO,
+        DVec3::new(0.1, 0.2, 2.0),
+        [DVec3::new(-0.1, -0.9, 0.0), DVec3::new(0.1, -0.6, 0.0)],
+        64,
+        1.0,
+    );
+    assert_eq!(how_many_together(&rays), 64);
+    let (coarse, fine) =
+        (TracerCast::new(&sheet(1.0, DVec3::ZERO, 8)), TracerCast::new(&sheet(1.0, DVec3::ZERO, 300)));
+    for (cast, pays) in [(&coarse, true), (&fine, false)] {
+        let mut packet = Packet::EMPTY;
+        assert!(packet.seek(&cast.tree, &mut cast.tree.boxes.stack(), &rays, Sides::Both));
+        assert_eq!(packet.was_worth_it(), pays);
+        let hits = (0..64).filter(|&lane| packet.nearest(lane).is_some()).count();
+        assert!(hits > 50, "{hits}");
+        compare_many(cast, &rays[..8]).unwrap();
+    }
+    // Too wide together, too far away, too few, from two points, and with a sharp turn.
+    let wide =
+        fan(1.0, DVec3::ZERO, DVec3::new(0.0, 0.0, 1.0), [DVec3::splat(-0.9), DVec3::splat(0.9)], 64, 1.0);
+    assert_eq!(how_many_together(&wide), 64);
+    let mut packet = Packet::EMPTY;
+    assert!(!packet.seek(&coarse.tree, &mut coarse.tree.boxes.stack(), &wide, Sides::Both));
+    let far = fan(1.0, DVec3::ZERO, DVec3::new(0.0, 0.0, 12.0), [DVec3::ZERO, DVec3::X], 64, 1.0);
+    assert!(!packet.seek(&coarse.tree, &mut coarse.tree.boxes.stack(), &far, Sides::Both));
+    assert_eq!(how_many_together(&rays[..7]), 0);
+    let mut two = rays.clone();
+    two[20].origin.x += 1e-12;
+    assert_eq!(how_many_together(&two), 20);
+    two[10].direction = -two[10].direction;
+    assert_eq!(how_many_together(&two), 10);
+    for rays in [&wide, &far, &two] {
+        compare_many(&coarse, rays).unwrap();
+    }
+}
+
+#[test]
+fn a_packet_that_starts_on_a_face_meets_it_at_plain_zero() {
+    let mesh = Triangles::new(vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]]);
+    let cast = TracerCast::new(&mesh.unwrap());
+    for z in [1.0, -1.0] {
+        let ray = |k: u32| CastRay::new(DVec3::ZERO, DVec3::new(0.001 * f64::from(k), 0.0, z));
+        let rays: Vec<CastRay> = (0..16).map(ray).collect();
+        let mut packet = Packet::EMPTY;
+        assert!(packet.seek(&cast.tree, &mut cast.tree.boxes.stack(), &rays, Sides::Both));
+        let mut bits = Vec::new();
+        cast.traverser()
+            .first_of_each(&rays, Sides::Both, |_, met| bits.extend(met.map(|met| met.t().to_bits())));
+        assert_eq!(bits, [0; 16]);
+    }
+}
+
+#[test]
+fn a_quad_refuses_no_face_that_is_met_and_nearly_all_others() {
+    let cast = TracerCast::new(&sheet(1.0, DVec3::new(3.0, -2.0, 1.0), 40));
+    let (mut kept, mut met) = (0, 0);
+    for k in 0..500_u32 {
+        // Through vertices and edges, aslant.
+        let at = |step: u32| f64::from(k * step % 41) / 20.0 - 1.0;
+        let aim = DVec3::new(3.0 + at(3), -2.0 + if k % 2 == 0 { at(5) } else { at(5) + 0.013 }, 1.0);
+        let origin = DVec3::new(2.3, -1.6, 3.0);
+        let ray = CastRay::new(origin, aim - origin);
+        let scaled = cast.tree.frame.ray(&ray);
+        let Walk::Tree { box_ray, .. } = cast.tree.frame.walk(&ray, &scaled) else { continue };
+        let sheared = Sheared::new(&scaled.ray, &box_ray);
+        for quad in &cast.tree.quads {
+            let may_meet = quad.may_meet(&sheared);
+            kept += may_meet.count_ones();
+            for lane in 0..quad.count {
+                let is_met = cast.tree.faces[(quad.first + lane) as usize]
+                    .crossing(&ray, &scaled, Sides::Both)
+                    .is_some();
+                assert!(!is_met || may_meet >> lane & 1 == 1);
+                met += u32::from(is_met);
+            }
+        }
+    }
+    assert!(met > 400 && kept < 2 * met, "{kept} kept, {met} met");
+}
+
 #[test]
 fn every_kind_of_walk_is_taken() {
     let triangle = |z: f64| [[-1.0, -1.0, z], [1.0, -1.0, z], [0.0, 1.0, z]].map(DVec3::from_array);
@@ -120,7 +290,7 @@ fn every_kind_of_walk_is_taken() {
         &Triangles::new(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]]).unwrap(),
     );
     let beside = CastRay::new(DVec3::new(5.0, 5.0, 5.0), DVec3::X);
-    assert!(matches!(cast.frame.ray(&beside).walk, Walk::Nothing));
+    assert!(matches!(cast.tree.frame.walk(&beside, &cast.tree.frame.ray(&beside)), Walk::Nothing));
     // A mesh without faces is missed.
     let empty = TracerCast::new(&Triangles::new(vec![], vec![]).unwrap());
     assert_eq!(empty.traverser().first(&beside, Sides::Both), None);

@@ -24,7 +24,7 @@ fn below(
     nodes: &[Bvh2Node],
     index: usize,
     boxes: &[Aabb],
-    faces: &impl Fn(std::ops::Range<usize>) -> Vec<u32>,
+    faces: &impl Fn(Range<usize>) -> Vec<u32>,
 ) -> Vec<u32> {
     let node = &nodes[index];
     let first = node.first_index as usize;
@@ -64,6 +64,31 @@ fn every_box_is_in_one_leaf_and_inside_all_nodes_above_it() {
     assert!(none.upper.is_empty() && none.groups.is_empty());
     let none = Forest::build(3, |_| None);
     assert!(none.upper.is_empty() && none.groups.is_empty() && none.faces().0.is_empty());
+}
+
+#[test]
+fn few_faces_below_a_node_become_a_leaf() {
+    for count in [1, 4, 5, 2049, 9001] {
+        let boxes = scattered(count);
+        let forest = built(&boxes).with_leaves_of(4);
+        let mut members = below_upper(&forest, 0, &boxes);
+        members.sort_unstable();
+        assert!(members.into_iter().eq(0..count), "{count}");
+        for group in &forest.groups {
+            let leaves = group.leaves();
+            let box_of = |at: u32| boxes[group.faces[at as usize] as usize];
+            let are_equal = |leaf: &Range<u32>| leaf.clone().all(|at| box_of(at) == box_of(leaf.start));
+            // obvhs has leaves of up to eight boxes.
+            assert!(leaves.iter().all(|leaf| (1..=8).contains(&leaf.len()) || are_equal(leaf)));
+            assert_eq!(leaves.iter().map(|leaf| leaf.len()).sum::<usize>(), group.faces.len());
+            // No two leaves that would fit one leave their parent a node.
+            let below = |node: &Bvh2Node| [0, 1].map(|k| group.nodes[(node.first_index + k) as usize]);
+            let inner = group.nodes.iter().filter(|node| !node.is_leaf());
+            let is_full =
+                |[a, b]: [Bvh2Node; 2]| !(a.is_leaf() && b.is_leaf()) || a.prim_count + b.prim_count > 4;
+            assert!(inner.map(below).all(is_full));
+        }
+    }
 }
 
 #[test]

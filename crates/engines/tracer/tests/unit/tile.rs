@@ -10,6 +10,7 @@ use super::*;
 use crate::closest_hit::{ClosestHitTraverser, update_closest};
 use crate::hierarchy::Hierarchy;
 use crate::lanes::{self, Instructions, Work};
+use crate::triangle::widen;
 
 /// The closest hits of a tile's rays, as face and bits of t.
 struct Hits<'a, 'h> {
@@ -119,7 +120,7 @@ fn a_refused_face_is_met_by_no_ray_of_a_block_however_narrow_the_margin() {
     }
     tile.prepare();
     assert_eq!(tile.begin(u64::MAX), u64::MAX);
-    let face = SeenFace::new(&triangle, &tile);
+    let face = SeenFace::new(triangle.corners(), &tile);
     assert!(!tile.misses_front(&face) && !tile.misses(&face));
     for block in 0..BLOCKS {
         assert!(!tile.block_misses_front(block, &face));
@@ -131,5 +132,5 @@ fn a_refused_face_is_met_by_no_ray_of_a_block_however_narrow_the_margin() {
     }
     // A face beside all of them is refused for all at once.
     let beside = Triangle::new([a, c, b].map(|[x, y, z]| [x - 2.0, y + 2.0, z]), FaceId(0));
-    assert!(tile.misses_front(&SeenFace::new(&beside, &tile)));
+    assert!(tile.misses_front(&SeenFace::new(beside.corners(), &tile)));
 }
