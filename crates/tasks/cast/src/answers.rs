@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use raypencil_referee::{CastHit, CastMeeting, DecidedBy, ExactCast, Margins, SidedFace};
+use raypencil_referee::{CastHit, CastMeeting, DecidedBy, ExactCast, HitGroup, Margins, SidedFace};
 use raypencil_scene::pattern::EchoLight;
 use raypencil_scene::{CastRay, FaceId, Progress, Reading, Side, Sides, Triangles};
 use raypencil_tracer::{TracedHit, TracerCast};
@@ -260,7 +260,7 @@ pub fn cast_beside_first(
     let any = questions.any.then(|| any_exactly(exact, rays, sides));
     let all = questions.all.then(|| {
         progress.stage(&format!("all hits of {} rays", rays.len()));
-        each(rays, |ray| all(exact, ray, sides))
+        all_exactly(exact, rays, sides)
     });
     let margins = questions.margins.then(|| {
         progress.stage(&format!("margins of {} rays", rays.len()));
@@ -357,12 +357,20 @@ fn first_hit(meeting: &CastMeeting<'_>, ties: u32) -> FirstHit {
     }
 }
 
-fn all(exact: &ExactCast<'_>, ray: &CastRay, sides: Sides) -> Vec<GroupAtT> {
-    let groups = exact.all(ray, sides).into_iter();
-    groups
-        .filter_map(|group| {
-            let t = exact.meeting(ray, group.faces.first()?.face)?.t().double;
-            Some(GroupAtT { t, faces: group.faces, crossing: group.crossing })
-        })
-        .collect()
+fn all_exactly(exact: &ExactCast<'_>, rays: &[CastRay], sides: Sides) -> Vec<Vec<GroupAtT>> {
+    let with_t = |ray: &CastRay, group: HitGroup| {
+        let t = exact.meeting(ray, group.faces.first()?.face)?.t().double;
+        Some(GroupAtT { t, faces: group.faces, crossing: group.crossing })
+    };
+    let of_part = |part: &[CastRay]| {
+        let mut all = vec![Vec::new(); part.len()];
+        exact.all_of_each(part, sides, |index, groups| {
+            all[index] = groups.into_iter().filter_map(|group| with_t(&part[index], group)).collect();
+        });
+        all
+    };
+    match rays.len() {
+        0..=FEW_RAYS => of_part(rays),
+        _ => rays.par_chunks(RAYS_A_PART).flat_map_iter(of_part).collect(),
+    }
 }

@@ -20,13 +20,15 @@
 //! displaced ray decides, always in the same way.
 
 use std::cmp::Ordering;
+use std::iter::Enumerate;
+use std::slice;
 
 use raypencil_scene::{CastRay, FaceId, Side, Sides};
 
 use super::ExactCast;
 use super::query_ray::{Polynomial, QueryRay, RayNumbers};
 use super::triangle::{Met, Triangle};
-use super::wide_tree::Next;
+use super::wide_tree::{FrameRay, Next, Rays, TOGETHER, how_many_together};
 use crate::numbers::number::Number;
 
 /// A face that is met, and the side that is.
@@ -48,41 +50,135 @@ pub struct HitGroup {
     pub crossing: i32,
 }
 
+/// A face that is met, the side that is, and bounds of its t.
+#[derive(Debug, Clone, Copy)]
+struct MetFace {
+    face: Triangle,
+    side: Side,
+    t: [f64; 2],
+}
+
+impl MetFace {
+    fn new(face: &Triangle, query: &QueryRay<'_>) -> Option<Self> {
+        face.met(query, Sides::Both).map(|Met { side, t }| Self { face: *face, side, t: [t.low, t.high] })
+    }
+
+    /// By the bounds of t where these are apart, else exactly.
+    fn order(&self, other: &Self, query: &QueryRay<'_>) -> Ordering {
+        if self.t[1] < other.t[0] {
+            Ordering::Less
+        } else if self.t[0] > other.t[1] {
+            Ordering::Greater
+        } else {
+            self.face.compare(&other.face, query)
+        }
+    }
+}
+
 impl ExactCast<'_> {
     /// All faces that the ray meets, in the exact order of t, grouped where t is the same. With
     /// [`Sides::Fronts`], only groups with a front are listed, and only fronts in them.
     pub fn all(&self, ray: &CastRay, sides: Sides) -> Vec<HitGroup> {
         let query = QueryRay::new(ray);
-        let mut met: Vec<(Triangle, Side, [f64; 2])> = Vec::new();
+        let mut met = Vec::new();
         self.walk(ray, |face| {
-            if let Some(Met { side, t }) = face.met(&query, Sides::Both) {
-                met.push((*face, side, [t.low, t.high]));
-            }
+            met.extend(MetFace::new(face, &query));
             Next::On
         });
-        // By the intervals of t where these are apart, else exactly.
-        let order = |(a, _, of_a): &(Triangle, Side, [f64; 2]), (b, _, of_b): &(Triangle, Side, [f64; 2])| {
-            if of_a[1] < of_b[0] {
-                Ordering::Less
-            } else if of_a[0] > of_b[1] {
-                Ordering::Greater
-            } else {
-                a.compare(b, &query)
-            }
-        };
-        met.sort_by(|a, b| order(a, b).then(a.0.id.cmp(&b.0.id)));
-        met.chunk_by(|a, b| order(a, b).is_eq())
-            .filter_map(|group| {
-                let faces: Vec<SidedFace> = group
-                    .iter()
-                    .filter(|(_, side, _)| sides.include(*side))
-                    .map(|(face, side, _)| SidedFace { face: face.id, side: *side })
-                    .collect();
-                let crossing = group.iter().map(|(face, side, _)| crossing(face, *side, &query)).sum();
-                (!faces.is_empty()).then_some(HitGroup { faces, crossing })
-            })
-            .collect()
+        groups(&mut met, &query, sides)
     }
+
+    /// [`all`](Self::all) of many rays, which is quicker than one after the other: `each` gets the index of every ray, in no
+    /// particular order.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use raypencil_referee::ExactCast;
+    /// use raypencil_scene::{CastRay, Sides, Triangles};
+    ///
+    /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let triangle = Triangles::new(corners, vec![[0, 1, 2]])?;
+    /// let rays = [0.25, 2.0].map(|x| CastRay::new(DVec3::new(x, 0.25, 1.0), DVec3::NEG_Z));
+    /// let mut groups = [usize::MAX; 2];
+    /// ExactCast::new(&triangle).all_of_each(&rays, Sides::Both, |k, all| groups[k] = all.len());
+    /// assert_eq!(groups, [1, 0]);
+    /// # Ok::<(), raypencil_scene::SceneError>(())
+    /// ```
+    pub fn all_of_each(&self, rays: &[CastRay], sides: Sides, mut each: impl FnMut(usize, Vec<HitGroup>)) {
+        self.walk_to_all(rays, sides, &mut each);
+    }
+
+    /// [`all_of_each`](Self::all_of_each), compiled once, with this crate's optimisation.
+    #[inline(never)]
+    fn walk_to_all(&self, rays: &[CastRay], sides: Sides, each: &mut dyn FnMut(usize, Vec<HitGroup>)) {
+        let mut walks = AllWalks {
+            cast: self,
+            sides,
+            rays: rays.iter().enumerate(),
+            places: [const { None }; TOGETHER],
+            met: [const { Vec::new() }; TOGETHER],
+            each,
+        };
+        self.tree.wide.walk_together(self.mesh.vertices(), &mut walks, how_many_together(rays));
+    }
+}
+
+/// Many rays on their way through everything.
+struct AllWalks<'c, 'r, 'e> {
+    cast: &'c ExactCast<'c>,
+    sides: Sides,
+    rays: Enumerate<slice::Iter<'r, CastRay>>,
+    places: [Option<(usize, QueryRay<'r>)>; TOGETHER],
+    /// What the ray of each place has met.
+    met: [Vec<MetFace>; TOGETHER],
+    each: &'e mut dyn FnMut(usize, Vec<HitGroup>),
+}
+
+impl Rays for AllWalks<'_, '_, '_> {
+    #[inline]
+    fn begin(&mut self, place: usize) -> Option<FrameRay> {
+        loop {
+            let (index, ray) = self.rays.next()?;
+            match self.cast.tree.wide.ray(ray) {
+                Some(in_frame) => {
+                    self.places[place] = Some((index, QueryRay::new(ray)));
+                    self.met[place].clear();
+                    return Some(in_frame);
+                }
+                None => (self.each)(index, self.cast.all(ray, self.sides)),
+            }
+        }
+    }
+
+    #[inline]
+    fn see(&mut self, place: usize, face: &Triangle) -> Next {
+        let Some((_, query)) = &self.places[place] else { return Next::Stop };
+        self.met[place].extend(MetFace::new(face, query));
+        Next::On
+    }
+
+    #[inline]
+    fn end(&mut self, place: usize) {
+        if let Some((index, query)) = &self.places[place] {
+            (self.each)(*index, groups(&mut self.met[place], query, self.sides));
+        }
+    }
+}
+
+/// What is met, in its order and in groups.
+fn groups(met: &mut [MetFace], query: &QueryRay<'_>, sides: Sides) -> Vec<HitGroup> {
+    met.sort_by(|a, b| a.order(b, query).then(a.face.id.cmp(&b.face.id)));
+    met.chunk_by(|a, b| a.order(b, query).is_eq())
+        .filter_map(|group| {
+            let faces: Vec<SidedFace> = group
+                .iter()
+                .filter(|met| sides.include(met.side))
+                .map(|met| SidedFace { face: met.face.id, side: met.side })
+                .collect();
+            let crossing = group.iter().map(|met| crossing(&met.face, met.side, query)).sum();
+            (!faces.is_empty()).then_some(HitGroup { faces, crossing })
+        })
+        .collect()
 }
 
 /// +1, -1 or 0: how the displaced ray passes a face that the ray itself meets on `side`.

@@ -252,6 +252,12 @@ fn rays_from_far_away_have_the_same_answers() {
         assert_eq!(found, once);
         let is_met: Vec<bool> = expected.iter().map(Option::is_some).collect();
         assert_eq!(cast.any_of(&rays, Sides::Both), is_met);
+        for sides in [Sides::Both, Sides::Fronts] {
+            let mut found = vec![Vec::new(); count];
+            cast.all_of_each(&rays, sides, |index, groups| found[index].push(groups));
+            let one_by_one: Vec<_> = rays.iter().map(|ray| vec![cast.all(ray, sides)]).collect();
+            assert_eq!(found, one_by_one);
+        }
     }
     assert!(near > 100 && distant > 100 && hits > 100, "{near} near, {distant} far away, {hits} hits");
 }
