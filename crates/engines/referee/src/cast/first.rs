@@ -142,7 +142,7 @@ impl ExactCast<'_> {
     pub fn first_moved(&self, ray: &CastRay, sides: Sides, by: [f64; 2]) -> Vec<FaceId> {
         let query = QueryRay::moved(ray, by);
         let mut nearest = Nearest::new(sides);
-        walk_bundle(&self.tree.bvh, &moved_bundle(ray, by), ray, |face| nearest.see(face, &query));
+        walk_bundle(self.bvh(), &moved_bundle(ray, by), ray, |face| nearest.see(face, &query));
         nearest.sorted().iter().map(|face| face.id).collect()
     }
 
@@ -204,7 +204,7 @@ impl<'r, E: FnMut(usize, &QueryRay<'r>, &Nearest)> Rays for FirstWalks<'_, 'r, E
                     return Some(in_frame);
                 }
                 None => {
-                    walk_bundle(&self.cast.tree.bvh, &bundle(ray), ray, |face| nearest.see(face, &query));
+                    walk_bundle(self.cast.bvh(), &bundle(ray), ray, |face| nearest.see(face, &query));
                     (self.each)(index, &query, &nearest);
                 }
             }

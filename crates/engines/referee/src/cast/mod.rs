@@ -119,9 +119,10 @@ impl CastTree {
 /// What is made of a mesh once.
 #[derive(Debug)]
 struct Tree {
-    bvh: Bvh<Triangle>,
-    /// The same for rays that are not moved.
+    /// For rays that are not moved.
     wide: WideTree,
+    /// For moved rays, and those that start too far away for `wide`. Made when one is first asked for.
+    bvh: OnceLock<Bvh<Triangle>>,
     /// The diagonal of the mesh's bounding box, to which margins are capped.
     diagonal: f64,
     /// The largest coordinate of a vertex.
@@ -132,16 +133,10 @@ struct Tree {
 
 impl Tree {
     fn of(mesh: &Triangles) -> Self {
-        let indices = (0..mesh.faces().len() as u32).into_par_iter();
-        let mut faces: Vec<Triangle> = indices.map(|index| Triangle::of(mesh, FaceId(index))).collect();
-        if !faces.par_iter().all(Triangle::has_area) {
-            faces.retain(Triangle::has_area);
-        }
         let [low, high] = mesh.bounds().unwrap_or_default();
-        let wide = WideTree::of(mesh, &faces);
         Self {
-            wide,
-            bvh: Bvh::build(faces),
+            wide: WideTree::of(mesh),
+            bvh: OnceLock::new(),
             diagonal: length(high - low),
             largest_coordinate: low.abs().max(high.abs()).max_element(),
             seams: OnceLock::new(),
@@ -155,13 +150,20 @@ impl<'t> ExactCast<'t> {
         Self { mesh, tree: Arc::new(Tree::of(mesh)) }
     }
 
+    fn bvh(&self) -> &Bvh<Triangle> {
+        self.tree.bvh.get_or_init(|| aside(|| Bvh::build(faces_with_area(self.mesh).collect())))
+    }
+
     fn seams(&self) -> &Seams {
-        self.tree.seams.get_or_init(|| Seams::of(self.mesh, &self.tree.bvh))
+        self.tree.seams.get_or_init(|| {
+            let bvh = self.bvh();
+            aside(|| Seams::of(self.mesh, bvh))
+        })
     }
 
     /// The hierarchy with one face in each place.
     fn places(&self) -> &Bvh<Triangle> {
-        self.seams().without_copies().unwrap_or(&self.tree.bvh)
+        self.seams().without_copies().unwrap_or_else(|| self.bvh())
     }
 
     /// [`walk`](Self::walk) with one face in each place.
@@ -175,10 +177,10 @@ impl<'t> ExactCast<'t> {
     /// Shows the faces that the ray may meet, and others, nearer ones first, until it is enough.
     #[inline]
     fn walk(&self, ray: &CastRay, visit: impl FnMut(&Triangle) -> Next) {
-        let Tree { bvh, wide, .. } = &*self.tree;
+        let wide = &self.tree.wide;
         match wide.ray(ray) {
             Some(in_frame) => wide.walk(self.mesh.vertices(), &in_frame, visit),
-            None => walk_bundle(bvh, &bundle(ray), ray, visit),
+            None => walk_bundle(self.bvh(), &bundle(ray), ray, visit),
         }
     }
 
@@ -186,6 +188,32 @@ impl<'t> ExactCast<'t> {
     fn triangle(&self, face: FaceId) -> Option<Triangle> {
         ((face.0 as usize) < self.mesh.faces().len()).then(|| Triangle::of(self.mesh, face))
     }
+}
+
+/// The faces of a mesh that have an area.
+fn faces_with_area(mesh: &Triangles) -> impl ParallelIterator<Item = Triangle> + '_ {
+    let indices = (0..mesh.faces().len() as u32).into_par_iter();
+    indices.map(|index| Triangle::of(mesh, FaceId(index))).filter(Triangle::has_area)
+}
+
+/// Does work for which other threads wait, on a thread and a pool of its own. A thread of the common pool would take other tasks
+/// while it waits for a part of the work, and one of these could wait for the whole.
+fn aside<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    let threads = rayon::current_num_threads();
+    std::thread::scope(|scope| {
+        let in_pool = move || match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+            Ok(pool) => pool.install(work),
+            // No more threads are to be had: on this one alone.
+            Err(_) => {
+                let alone = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
+                alone.expect("a pool of this thread").install(work)
+            }
+        };
+        match scope.spawn(in_pool).join() {
+            Ok(made) => made,
+            Err(panic) => std::panic::resume_unwind(panic),
+        }
+    })
 }
 
 /// [`ExactCast::walk`] for rays of any size, and moved ones.

@@ -182,7 +182,7 @@ impl Trial<'_> {
                 let around = RayBundle { start_radius: bundle.start_radius + 2.0 * most, ..bundle };
                 let query = QueryRay::new(self.ray);
                 let mut beside = Vec::new();
-                self.cast.tree.bvh.visit(&around, |face| {
+                self.cast.bvh().visit(&around, |face| {
                     let (t, error) = self.t_and_error(face, &query);
                     if t - error < self.ray.t_blind && t + error >= self.ray.t_min {
                         beside.push(*face);
@@ -234,7 +234,7 @@ impl Trial<'_> {
         };
         let bundle = moved_bundle(self.ray, by);
         let mut is_excused = true;
-        self.cast.tree.bvh.visit(&bundle, |face| {
+        self.cast.bvh().visit(&bundle, |face| {
             if is_excused && face.met_side(&query, self.sides).is_some() {
                 let (t, error) = self.t_and_error(face, &query);
                 // Clearly within the ray's ends, and clearly before the stated face.
@@ -257,7 +257,7 @@ impl Trial<'_> {
     fn is_any_too_near(&self, by: [f64; 2], met: impl Fn(&Triangle) -> Option<(f64, f64)>) -> bool {
         let bundle = moved_bundle(self.ray, by);
         let mut is_any = false;
-        self.cast.tree.bvh.visit(&bundle, |face| {
+        self.cast.bvh().visit(&bundle, |face| {
             is_any = is_any || met(face).is_some_and(|(t, error)| t - error < self.ray.t_blind);
             bundle.max_range
         });

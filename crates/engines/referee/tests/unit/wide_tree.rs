@@ -105,8 +105,8 @@ fn every_face_that_is_met_is_shown_and_few_others() {
     for (name, faces, most) in families {
         for (by, size) in places {
             let (mesh, faces) = moved_and_scaled(&faces, by, size);
-            let tree = Tree::of(&mesh);
-            let all = tree.bvh.faces_below(0);
+            let cast = ExactCast::new(&mesh);
+            let (tree, all) = (&cast.tree, cast.bvh().faces_below(0));
             let (mut shown, mut met, mut asked) = (0, 0, 0);
             for k in 0..2000 {
                 let far = [0.5, 1.0, 30.0, 3e4][k % 4];
@@ -145,8 +145,8 @@ fn every_face_is_in_a_leaf_whatever_their_number() {
     let mut random = SplitMix64(5);
     let all = moved_and_scaled(&scattered(&mut random, 0.1), DVec3::ZERO, 1.0).0;
     for count in (0..=70).chain([128, 129, 255, 256, 257, 260, 300]) {
-        let faces: Vec<Triangle> = (0..count).map(|id| Triangle::of(&all, FaceId(id))).collect();
-        let tree = WideTree::of(&all, &faces);
+        let faces = all.faces()[..count as usize].to_vec();
+        let tree = WideTree::of(&Triangles::new(all.vertices().to_vec(), faces).expect("a mesh"));
         let mut found = Vec::new();
         let mut waiting: Vec<u32> = (!tree.nodes.is_empty()).then_some(0).into_iter().collect();
         let mut nodes = 0;
@@ -169,6 +169,37 @@ fn every_face_is_in_a_leaf_whatever_their_number() {
         found.sort_unstable();
         assert_eq!(found, (0..count).collect::<Vec<_>>());
         assert_eq!((nodes, tree.leaves.len()), (tree.nodes.len(), (count as usize).div_ceil(LEAF_WIDTH)));
+    }
+}
+
+#[test]
+fn what_is_made_when_it_is_first_asked_for_may_be_asked_for_by_many_tasks_at_once() {
+    // Each face twice, and so many that they are built on several threads.
+    let mut random = SplitMix64(8);
+    let mut faces = Vec::new();
+    while faces.len() < 3 * 4096 {
+        faces.extend(scattered(&mut random, 0.02));
+    }
+    let mesh = moved_and_scaled(&faces, DVec3::ZERO, 1.0).0;
+    let twice = [mesh.faces(), mesh.faces()].concat();
+    let mesh = Triangles::new(mesh.vertices().to_vec(), twice).expect("a mesh");
+    let rays: Vec<CastRay> = (0..64)
+        .map(|k| CastRay::new(DVec3::new(f64::from(k % 8) / 8.0, f64::from(k / 8) / 8.0, 1e7), DVec3::NEG_Z))
+        .collect();
+    for threads in [1, 2, 5] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        let cast = ExactCast::new(&mesh);
+        let told: Vec<_> = pool.install(|| {
+            use rayon::prelude::*;
+            rays.par_iter()
+                .map(|ray| (cast.first(ray, Sides::Both), cast.margins(ray, Sides::Both)))
+                .collect()
+        });
+        let fresh = ExactCast::new(&mesh);
+        let one_by_one: Vec<_> =
+            rays.iter().map(|ray| (fresh.first(ray, Sides::Both), fresh.margins(ray, Sides::Both))).collect();
+        assert_eq!(told, one_by_one);
+        assert!(told.iter().filter(|(first, _)| first.len() > 1).count() > 10);
     }
 }
 
@@ -216,8 +247,7 @@ fn rays_from_far_away_have_the_same_answers() {
         }
         let query = QueryRay::new(&ray);
         let met: Vec<&Triangle> = cast
-            .tree
-            .bvh
+            .bvh()
             .faces_below(0)
             .iter()
             .filter(|face| face.met_side(&query, Sides::Both).is_some())

@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
-use raypencil_scene::Triangles;
+use raypencil_scene::{FaceId, Triangles};
 
 use super::{EMPTY, Frame, LEAF, LEAF_WIDTH, Leaf, NO_FACES, Node, Triangle, WIDTH, WideTree, down, up};
 
@@ -12,7 +12,7 @@ use super::{EMPTY, Frame, LEAF, LEAF_WIDTH, Leaf, NO_FACES, Node, Triangle, WIDT
 struct Item {
     /// Three times the middle, in the frame.
     middle: [f32; 3],
-    /// Where it is among the faces.
+    /// Which face of the mesh it is.
     place: u32,
 }
 
@@ -41,27 +41,27 @@ const FACES_PER_PIECE: usize = 4096;
 /// What all parts are made of.
 struct Source<'s> {
     mesh: &'s Triangles,
-    faces: &'s [Triangle],
     frame: &'s Frame,
 }
 
 impl WideTree {
-    /// The hierarchy of these faces of a mesh, built on all threads. It does not depend on their number, nor on the order of
-    /// the faces.
-    pub(in super::super) fn of(mesh: &Triangles, faces: &[Triangle]) -> Self {
-        if faces.is_empty() {
-            let frame = Frame { middle: DVec3::ZERO, scale: 1.0 };
+    /// The hierarchy of the faces of a mesh that have an area, built on all threads. It does not depend on their number.
+    pub(in super::super) fn of(mesh: &Triangles) -> Self {
+        let frame = Frame::of(mesh);
+        let item = |place: u32| {
+            let face = Triangle::of(mesh, FaceId(place));
+            face.has_area().then(|| Item::of(&frame, place, &face))
+        };
+        let mut items: Vec<Item> = (0..mesh.faces().len() as u32).into_par_iter().filter_map(item).collect();
+        if items.is_empty() {
             return Self { nodes: Vec::new(), leaves: Vec::new(), frame };
         }
-        let frame = Frame::of(faces);
-        let item = |(place, face): (usize, &Triangle)| Item::of(&frame, place as u32, face);
-        let mut items: Vec<Item> = faces.par_iter().enumerate().map(item).collect();
         let count = items.len().div_ceil(LEAF_WIDTH);
         // A root has a node in any case.
         let mut nodes = vec![EMPTY; nodes_of(count).max(1)];
         let mut leaves = vec![NO_FACES; count];
         let whole = Part { items: &mut items, nodes: &mut nodes, leaves: &mut leaves, node: 0, leaf: 0 };
-        whole.fill(&Source { mesh, faces, frame: &frame });
+        whole.fill(&Source { mesh, frame: &frame });
         Self { nodes, leaves, frame }
     }
 }
@@ -163,9 +163,9 @@ impl<'p> Part<'p> {
         // What belongs together, whatever the order of the split.
         self.items.sort_unstable_by_key(|item| item.place);
         for (lane, item) in self.items.iter().enumerate() {
-            let face = source.faces[item.place as usize];
+            let face = Triangle::of(source.mesh, FaceId(item.place));
             leaf.ids[lane] = face.id;
-            leaf.vertices[lane] = source.mesh.faces()[face.id.0 as usize];
+            leaf.vertices[lane] = source.mesh.faces()[item.place as usize];
             let framed = face.corners.map(|corner| source.frame.of_point(corner));
             let corners = framed.map(|corner| corner.as_vec3());
             for k in 0..3 {

@@ -37,7 +37,7 @@ mod walk;
 
 use glam::{BVec4A, DVec3, Vec4};
 use rayon::prelude::*;
-use raypencil_scene::FaceId;
+use raypencil_scene::{FaceId, Triangles};
 
 use super::triangle::Triangle;
 
@@ -133,13 +133,20 @@ struct Frame {
 }
 
 impl Frame {
-    fn of(faces: &[Triangle]) -> Self {
+    /// Around the faces of a mesh that have an area.
+    fn of(mesh: &Triangles) -> Self {
         let none = || (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let with = |(low, high): (DVec3, DVec3), face: &Triangle| {
             face.corners.iter().fold((low, high), |(low, high), corner| (low.min(*corner), high.max(*corner)))
         };
         let both = |a: (DVec3, DVec3), b: (DVec3, DVec3)| (a.0.min(b.0), a.1.max(b.1));
-        let (low, high) = faces.par_iter().fold(none, with).reduce(none, both);
+        let faces =
+            (0..mesh.faces().len() as u32).into_par_iter().map(|face| Triangle::of(mesh, FaceId(face)));
+        let faces = faces.filter(Triangle::has_area);
+        let (low, high) = faces.fold(none, |bounds, face| with(bounds, &face)).reduce(none, both);
+        if low.x > high.x {
+            return Self { middle: DVec3::ZERO, scale: 1.0 };
+        }
         let middle = 0.5 * low + 0.5 * high;
         let half = (high - middle).max(middle - low).max_element();
         // Below 2^1000, so that it is finite; a smaller mesh is smaller in the frame, too.
