@@ -10,7 +10,9 @@ from __future__ import annotations
 
 import argparse
 import os
+import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -273,7 +275,72 @@ def measure(name: str, mesh: raypencil.Mesh, count: int, rounds: int, times: Tim
             costs.add(what, name, 1e6 * seconds(calls) / ONE_BY_ONE)
 
 
-def page(given: argparse.Namespace, grounds: dict[str, int], times: Times, costs: Times) -> str:
+def memory_of(status: str) -> int:
+    lines = Path("/proc/self/status").read_text().splitlines()
+    return next(1024 * int(line.split()[1]) for line in lines if line.startswith(status))
+
+
+def grown(program: str, folder: Path) -> None:
+    """Prints by how many bytes this process grows, at its peak, from a mesh and rays in memory to a tree, and to the answers."""
+    vertices, faces, rays = (np.load(folder / f"{name}.npy") for name in ("vertices", "faces", "rays"))
+    first = vertices[:3], np.array([[0, 1, 2]], np.uint32)
+    ask: Callable[[Any, Any], Callable[[Any], Any]]
+    if program == "Open3D":
+        import open3d as o3d
+
+        rays = o3d.core.Tensor(rays)
+
+        def ask(vertices: Any, faces: Any) -> Callable[[Any], Any]:
+            scene = o3d.t.geometry.RaycastingScene(nthreads=1)
+            scene.add_triangles(vertices, faces)
+            return lambda rays: scene.cast_rays(rays, nthreads=1)
+    else:
+        with_, _, asked = program.partition(": ")
+
+        def ask(vertices: Any, faces: Any) -> Callable[[Any], Any]:
+            mesh = raypencil.Mesh(vertices, faces)
+            return lambda rays: raypencil.cast(mesh, rays, values=asked.split(", "), with_=with_, threads=1)
+
+    # What the library itself takes is there before.
+    ask(*first)(rays[:1])
+    Path("/proc/self/clear_refs").write_text("5")
+    before = memory_of("VmRSS:")
+    answer = ask(vertices, faces)
+    answer(rays[:1])
+    tree = memory_of("VmHWM:") - before
+    answers = answer(rays)
+    print(tree, memory_of("VmHWM:") - before)
+    del answers
+
+
+#: Programs whose memory is told, and how they are called. Open3D has no choice of arrays: face, t, normal and two weights, in f32.
+GROWING = {
+    "exact, face and t": "referee: face, t",
+    "exact, face, t, normal, weights": "referee: face, t, normal, barycentric",
+    "`tracer`, face and t": "tracer: face, t",
+    "Open3D": "Open3D",
+}
+
+#: Rays of which the memory is measured.
+MANY = 1_000_000
+
+
+def memory(name: str, mesh: raypencil.Mesh, sizes: dict[tuple[str, str], list[float]]) -> None:
+    """Megabytes of each program for its tree, and with a million answers, each in a process of its own."""
+    print(f"{name}: memory", file=sys.stderr)
+    with tempfile.TemporaryDirectory() as folder:
+        of = {"vertices": mesh.vertices.astype(np.float32), "faces": mesh.faces, "rays": random_rays(mesh, MANY).astype(np.float32)}
+        for what, array in of.items():
+            np.save(Path(folder) / f"{what}.npy", array)
+        for title, program in GROWING.items():
+            told = subprocess.run([sys.executable, __file__, "--grown", program, folder], capture_output=True, text=True, check=False)
+            if told.returncode:
+                print(f"{title}: memory is not told: {told.stderr.strip().splitlines()[-1:]}", file=sys.stderr)
+                continue
+            sizes[title, name] = [int(size) / 1e6 for size in told.stdout.split()]
+
+
+def page(given: argparse.Namespace, grounds: dict[str, int], times: Times, costs: Times, sizes: dict[tuple[str, str], list[float]]) -> str:
     columns = [f"{name}, {kind}" for name in grounds for kind in ("camera", "random")]
     titles = [title for title in ("exact", "`tracer`", "Embree, robust", "Open3D", "Warp, processor")]
 
@@ -328,9 +395,19 @@ def page(given: argparse.Namespace, grounds: dict[str, int], times: Times, costs
                 for title, row in (("margins a second", "margins"), ("one ray, face and t", "one, face and t"), ("one ray, every value", "one, every value"))
             ],
         ),
+        "## Memory",
+        f"Megabytes by which a process grows at its peak from a mesh and {MANY:,} random rays in memory, both in f32, to the tree, and on to the "
+        "answers. raypencil keeps the mesh in f64 beside its tree, and answers in f64; Open3D's answers are in f32.",
+        table(
+            ["", *(f"{name}, {what}" for name in names for what in ("tree", "answers"))],
+            [
+                [title, *(cell for name in names for cell in [f"{size:.0f}" for size in sizes.get((title, name), [])] or ["-", "-"])]
+                for title in GROWING
+            ],
+        ),
         "## Goals",
         "The ranges are over all grounds and kinds of rays.",
-        goals(grounds, times, costs),
+        goals(grounds, times, costs, sizes),
         "## A million rays beside Open3D",
         "[million.py](../../reference/speed/million.py) asks both on any mesh:",
         "```py\n" + (HERE / "million.py").read_text().strip() + "\n```",
@@ -338,7 +415,7 @@ def page(given: argparse.Namespace, grounds: dict[str, int], times: Times, costs
     return "\n\n".join(parts) + "\n"
 
 
-def goals(grounds: dict[str, int], times: Times, costs: Times) -> str:
+def goals(grounds: dict[str, int], times: Times, costs: Times, sizes: dict[tuple[str, str], list[float]]) -> str:
     """Each goal beside what was measured, and of what is missed what it would take."""
     names, columns = list(grounds), [f"{name}, {kind}" for name in grounds for kind in ("camera", "random")]
 
@@ -355,6 +432,10 @@ def goals(grounds: dict[str, int], times: Times, costs: Times) -> str:
         return of * (times.median(a, column) or 0.0) / (times.median(b, column) or 1.0)
 
     walk = [share(100, "any, exact", "first, exact", column) for column in columns]
+    def times_open3d(title: str) -> list[float]:
+        pairs = [(sizes.get((title, name)), sizes.get(("Open3D", name))) for name in names]
+        return [ours[1] / theirs[1] for ours, theirs in pairs if ours and theirs]
+
     trees = known(times.ratio("tree, exact", "tree, Embree, robust", name) for name in names)
     embree = "times Embree, robust"
     rows = [
@@ -373,17 +454,11 @@ def goals(grounds: dict[str, int], times: Times, costs: Times) -> str:
             1.0,
             f"{{}} {embree}",
             ratio("first", "`tracer`"),
-            "It has nodes of eight boxes, but asks the faces of a leaf one by one in f64, and rays one after the other: each waits for its memory. "
-            "Leaves of four faces that f32 refuses together, and eight rays that take turns and fetch ahead, as the exact answers have them.",
+            "Where a camera's rays meet a face several times, 64 of them walk as a packet, which halves the time. Where nearly each meets another "
+            "face, a packet is slower than its rays one by one (tried: with 16, 32 and 64 rays); it would take packets whose leaves are asked in f32, too.",
         ),
         ("any hit, exact", 1.2, f"{{}} {embree}", ratio("any", "exact"), "The walk, as of first hits."),
-        (
-            "all hits, exact",
-            3.0,
-            "{} times first hits",
-            known(times.median("all, exact", name) for name in names),
-            "Rays that take turns: all hits are asked for one ray after the other.",
-        ),
+        ("all hits, exact", 3.0, "{} times first hits", known(times.median("all, exact", name) for name in names), ""),
         (
             "a correctly rounded value on top",
             0.4,
@@ -401,6 +476,21 @@ def goals(grounds: dict[str, int], times: Times, costs: Times) -> str:
         ),
         ("one ray, face and t, tree kept", 20, "{} microseconds", costing(["one, face and t"]), ""),
         ("tree of the exact answers, one thread", 1.0, f"{{}} {embree}", trees, ""),
+        ("memory, exact: face and t", 1.2, "{} times Open3D", times_open3d("exact, face and t"), "The leaves' numbers of vertices could be formed from the faces."),
+        (
+            "memory, exact: the arrays of Open3D",
+            1.2,
+            "{} times Open3D",
+            times_open3d("exact, face, t, normal, weights"),
+            "They are of f64, twice as wide; in f32 they would not be exact.",
+        ),
+        (
+            "memory, `tracer`: face and t",
+            1.2,
+            "{} times Open3D",
+            times_open3d("`tracer`, face and t"),
+            "It has the corners of all faces in f64; numbers of vertices would take a quarter.",
+        ),
     ]
     cells, left = [], []
     for what, goal, form, values, would_take in rows:
@@ -421,17 +511,23 @@ def main() -> None:
     parser.add_argument("--rays", type=int, default=250_000)
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("-o", "--out", type=Path)
+    parser.add_argument("--grown", nargs=2, metavar=("PROGRAM", "FOLDER"), help=argparse.SUPPRESS)
     given = parser.parse_args()
+    if given.grown:
+        grown(given.grown[0], Path(given.grown[1]))
+        return
     meshes = {f"generated {faces // 1000} k": generated(faces) for faces in given.faces}
     for file in given.mesh:
         meshes[Path(file).stem] = raypencil.load_mesh(file)
     times, costs = Times(), Times()
+    sizes: dict[tuple[str, str], list[float]] = {}
     grounds = {}
     for name, mesh in meshes.items():
         mesh = raypencil.Mesh(mesh.vertices.astype(np.float32), mesh.faces)
         grounds[name] = len(mesh.faces)
         measure(name, mesh, given.rays, given.rounds, times, costs)
-    text = page(given, grounds, times, costs)
+        memory(name, mesh, sizes)
+    text = page(given, grounds, times, costs, sizes)
     if given.out:
         beside = given.out.with_name(given.out.name + ".part")
         beside.write_text(text)

@@ -10,7 +10,7 @@ import pytest
 from conftest import random_rays, same_bits
 
 import raypencil
-from raypencil import Mesh, RaypencilError, _cast, cast, cast_chunks
+from raypencil import Mesh, RaypencilError, _arrays, _cast, cast, cast_chunks
 from raypencil._cast_result import VALUES
 
 
@@ -109,6 +109,33 @@ def given_arrays(shape: tuple[int, ...]) -> dict[str, np.ndarray]:
         "face": np.full(shape, 7, dtype=np.uint32),
         "any": np.full(shape, 7, dtype=np.uint8),
     }
+
+
+@pytest.mark.parametrize("at_a_time", [1 << 18, 7])
+def test_rays_of_single_precision_are_widened_a_block_at_a_time(cube: Mesh, monkeypatch: pytest.MonkeyPatch, at_a_time: int) -> None:
+    monkeypatch.setattr(_cast, "RAYS_AT_A_TIME", at_a_time)
+    rays = random_rays(60).astype(np.float32)
+    rays[:, 7] = np.inf
+    expected = cast(cube, rays.astype(np.float64))
+    assert expected.hit.any()
+    strided = np.zeros((60, 24), np.float32)
+    strided[:, ::3] = rays
+    for given in (rays, np.asfortranarray(rays), strided[:, ::3]):
+        answers = cast(cube, given)
+        for name, array in expected.arrays.items():
+            assert same_bits(answers.arrays[name], array), name
+        # Nothing is copied before.
+        assert np.shares_memory(_arrays.RayParts(given, None).parts[0], given)
+    # An array of single precision is no place for answers either, if the rays lie there.
+    own = np.zeros((4, 6), np.float32)
+    own[:, 5] = -1.0
+    with pytest.raises(RaypencilError, match="lies in the memory of the rays"):
+        cast(cube, own, values=("t",), out={"t": own.reshape(-1).view(np.float64)[:4]})
+    with pytest.raises(RaypencilError, match=r"\(4, 5\)"):
+        cast(cube, own[:, :5])
+    with pytest.raises(RaypencilError, match="rays\\[2\\]"):
+        own[2, 0] = np.nan
+        cast(cube, own)
 
 
 @pytest.mark.parametrize("at_a_time", [1 << 18, 7, 45])

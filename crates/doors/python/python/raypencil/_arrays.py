@@ -47,9 +47,20 @@ def reals(name: str, values: Any) -> NDArray[np.float64]:
     return np.ascontiguousarray(numbers, dtype=np.float64).reshape(numbers.shape)
 
 
+def numbers_of_rays(name: str, values: Any) -> NDArray[Any]:
+    """The same, but numbers of single precision stay so: a block of rays is widened when it is put together, which is exact."""
+    if type(values) is np.ndarray and values.dtype == np.float32:
+        return values
+    return reals(name, values)
+
+
 def vectors(name: str, values: Any) -> NDArray[np.float64]:
     """Vectors of three numbers: (..., 3)."""
-    numbers = reals(name, values)
+    return of_three(name, reals(name, values))
+
+
+def of_three(name: str, numbers: NDArray[Any]) -> NDArray[Any]:
+    """The same array, of vectors (..., 3)."""
     if numbers.ndim == 0 or numbers.shape[-1] != 3:
         raise RaypencilError(f"{name} has the shape {numbers.shape}; expected (..., 3)")
     return numbers
@@ -69,7 +80,7 @@ class RayParts:
         t_blind: Any | None = None,
     ) -> None:
         if directions is None:
-            together = reals("rays", origins)
+            together = numbers_of_rays("rays", origins)
             if together.ndim == 0 or together.shape[-1] not in (6, 8, 9):
                 raise RaypencilError(f"rays have the shape {together.shape}; expected (..., 6), (..., 8) or (..., 9)")
             origin, direction = together[..., 0:3], together[..., 3:6]
@@ -82,14 +93,15 @@ class RayParts:
                     raise RaypencilError("t_blind is given twice: rays of 9 numbers have it")
                 t_blind = together[..., 8]
         else:
-            origin, direction = vectors("origins", origins), vectors("directions", directions)
+            origin = of_three("origins", numbers_of_rays("origins", origins))
+            direction = of_three("directions", numbers_of_rays("directions", directions))
         #: Origins and directions (..., 3), then t_min, t_max and t_blind: an array or a number.
         self.parts: tuple[Any, ...] = (
             origin,
             direction,
-            0.0 if t_min is None else reals("t_min", t_min),
-            np.inf if t_max is None else reals("t_max", t_max),
-            0.0 if t_blind is None else reals("t_blind", t_blind),
+            0.0 if t_min is None else numbers_of_rays("t_min", t_min),
+            np.inf if t_max is None else numbers_of_rays("t_max", t_max),
+            0.0 if t_blind is None else numbers_of_rays("t_blind", t_blind),
         )
         #: The shape of the rays.
         self.shape: Shape = origin.shape[:-1]

@@ -19,7 +19,7 @@ from ._progress import Progress, stages
 Query = Literal["first", "any", "all"]
 
 #: Rays that are put together and answered at a time: their numbers take 19 MB.
-RAYS_AT_A_TIME = 1 << 18
+RAYS_AT_A_TIME = 1 << 17
 
 _ALL_VALUES = (1 << len(VALUES)) - 1
 
@@ -205,7 +205,7 @@ class Asked:
                 return self.of_block(core, rays.whole(), shape)
             with stages(progress) as on_stage:
                 return self.of_block(core, rays.whole(), shape, on_stage=on_stage)
-        if count > RAYS_AT_A_TIME:
+        if out is not None and count > RAYS_AT_A_TIME:
             # A ray that is none is found before anything is written.
             for index, start, _ in _arrays.blocks(shape, RAYS_AT_A_TIME):
                 _raypencil.check_rays(rays.block(index), start)
