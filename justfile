@@ -141,6 +141,10 @@ portraits:
 properties CASES:
     PROPTEST_CASES={{ CASES }} PROPTEST_RNG_SEED="$(od -An -N6 -tu8 /dev/urandom | tr -d ' ')" cargo test --release -p raypencil-tests --test it properties::
 
+# The signs and hits of `cast` against exact arithmetic, on CASES cases of each of six hostile families: 1,700,000 are ten million, a few minutes
+paths CASES:
+    RAYPENCIL_PATH_CASES={{ CASES }} cargo test --release -p raypencil-referee --lib -- --nocapture every_sign_and_every_hit
+
 # Random mutants of a crate against its fast tests; goes on where it was interrupted. PASS: first, or again (those that were
 # missed so far, after new tests were written): docs/evidence/mutants.md
 mutants CRATE PASS="first" SHARD="0/1":

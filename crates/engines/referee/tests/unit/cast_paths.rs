@@ -91,6 +91,11 @@ fn met_exactly(ray: &CastRay, face: &Triangle, sides: Sides) -> Option<Side> {
     (sides.include(side) && is_inside && is_after && is_before).then_some(side)
 }
 
+/// Cases of each family; `just paths` asks for more.
+fn cases() -> u64 {
+    std::env::var("RAYPENCIL_PATH_CASES").map_or(20_000, |text| text.parse().expect("a number of cases"))
+}
+
 #[test]
 fn every_sign_and_every_hit_is_that_of_exact_arithmetic() {
     let families: [(&str, Family); 6] = [
@@ -102,11 +107,12 @@ fn every_sign_and_every_hit_is_that_of_exact_arithmetic() {
         ("ends at a face", ends_at_a_face),
     ];
     let mut random = SplitMix64(45);
-    let mut ways = Vec::new();
+    let (mut ways, cases) = (Vec::new(), cases());
+    assert!(cases >= 20_000, "too few cases to tell");
     for (name, family) in families {
         PATHS.set([0; 4]);
         let mut hits = 0;
-        for _ in 0..20_000 {
+        for _ in 0..cases {
             let (ray, corners) = family(&mut random);
             let face = Triangle { id: FaceId(0), corners };
             let query = QueryRay::new(&ray);
@@ -139,12 +145,14 @@ fn every_sign_and_every_hit_is_that_of_exact_arithmetic() {
             }
         }
         assert!(hits > 100, "{name}: {hits} hits are too few to tell");
+        println!("{name}: {cases} cases, {hits} hits; filter, plane, interval, exact: {:?}", PATHS.get());
         ways.push((name, PATHS.get()));
     }
     let of = |name: &str| ways.iter().find(|(of, _)| *of == name).expect("a family").1;
     // Where rays go anywhere, the first path does nearly all; what is hard takes the others.
     let [filter, plane, interval, exact] = of("anywhere");
-    assert!(filter > 100_000 && plane > 1000 && interval < 10 && exact < 10, "{:?}", of("anywhere"));
+    assert!(filter > 5 * cases && plane > cases / 20, "{:?}", of("anywhere"));
+    assert!(2000 * interval < cases && 2000 * exact < cases, "{:?}", of("anywhere"));
     for name in ["at an edge", "huge and tiny", "slender"] {
         let [filter, plane, _, exact] = of(name);
         assert!(filter > 1000 && plane > 1000 && exact > 1000, "{name}: {:?}", of(name));
