@@ -120,10 +120,11 @@ report-figures:
     target/release/raypencil validate pyramids --with scanline-paper,tracer --thickness 80 -o out/figures/paper
     {{ chromium }} --window-size=1280,1480 --screenshot=docs/figures/report.png "file://$PWD/out/figures/paper/report.html"
 
-# Figures 11 to 16 of the paper, by the rules as printed: out/figures/pyramids and out/figures/facets (docs/theory/paper.md)
+# Figures 11 to 16 of the paper, by the rules as printed and without scans: out/figures/pyramids and out/figures/facets
+# (docs/theory/paper.md)
 figures:
-    cargo run --release --bin raypencil -- drive pyramids --as-printed --set drive.obstacles_every_frames=25 -o out/figures/pyramids
-    cargo run --release --bin raypencil -- drive facets --as-printed --set drive.obstacles_every_frames=25 -o out/figures/facets
+    cargo run --release --bin raypencil -- drive pyramids --as-printed --set drive.scans=false --set drive.obstacles_every_frames=25 -o out/figures/pyramids
+    cargo run --release --bin raypencil -- drive facets --as-printed --set drive.scans=false --set drive.obstacles_every_frames=25 -o out/figures/facets
 
 # Times of the cold build, of rebuilds and of the tests: docs/evidence/build-times.md. An hour on two cores with nothing beside it
 build-times:
