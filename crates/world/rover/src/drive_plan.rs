@@ -216,6 +216,11 @@ impl DrivePlan {
         self.rules.validate(&name("rules"))?;
         self.truth.validate(&name("truth"), &self.vehicle)?;
         self.grid.validate(&name("grid"))?;
+        if self.map.spacing > self.vehicle.width() {
+            let expected =
+                format!("at most {} m, the width of the vehicle over its wheels", self.vehicle.width());
+            return Err(SceneError::new(name("map.spacing"), format!("{} m", self.map.spacing), expected));
+        }
         if self.map.reach() < self.grid.first {
             let value = format!("{}, which reach {} m from the middle", self.map.points, self.map.reach());
             let expected = format!("enough for the first radius of the grid, {} m", self.grid.first);

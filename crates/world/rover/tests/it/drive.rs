@@ -9,8 +9,8 @@ use glam::{DVec2, DVec3};
 use raypencil_rover::{
     BeamEdge, CameraImage, Detection, Drive, DriveFrame, DrivePlan, EdgePoint, ElevationMap, ElevationSource,
     Exposure, ExposureMode, Extraction, Inconsistency, Label, LocalMapper, LocalisationErrors,
-    LocalisationReading, MapRules, MapUpdate, MissionStart, OnVehicle, PositionFixes, Rig, Route, ScanReason,
-    ScanRule, StartRule, StripeExtractor, StripeLocation, StripePoint, Stripes, Sweep,
+    LocalisationReading, MapRules, MapSize, MapUpdate, MissionStart, OnVehicle, PositionFixes, Rig, Route,
+    ScanReason, ScanRule, StartRule, StripeExtractor, StripeLocation, StripePoint, Stripes, Sweep,
 };
 use raypencil_scene::{Image, Mesh, Pose, Precision, RenderOutput, Renderer, Request, Scene, SceneError};
 
@@ -65,6 +65,14 @@ fn drive(plan: DrivePlan, mesh: &Arc<Mesh>) -> (Drive, Vec<DriveFrame>) {
         frames.push(frame);
     }
     (drive, frames)
+}
+
+#[test]
+fn a_cell_of_the_map_is_at_most_as_wide_as_the_vehicle() {
+    let with = |spacing| DrivePlan { map: MapSize { spacing, points: 201 }, ..plan() }.validate("drive");
+    let width = plan().vehicle.width();
+    assert_eq!(with(width), Ok(()));
+    assert_eq!(with(width.next_up()).map_err(|error| error.field), Err("drive.map.spacing".to_string()));
 }
 
 #[test]

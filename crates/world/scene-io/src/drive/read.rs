@@ -410,6 +410,16 @@ impl Source<'_> {
             );
             return Err(self.error(angle.span(), message));
         }
+        // Beyond the limit the wheels of a side, or all four, would stand on one grid point: no slope is between them.
+        let (spacing, width) = (plan.map.spacing, plan.vehicle.width());
+        let widths = [span(&keys.map_spacing_m), span(&keys.track_m), span(&keys.wheel_width_m)];
+        if let (Some(span), true) = (widths.into_iter().flatten().next(), spacing > width) {
+            let message = format!(
+                "`drive.map_spacing_m` is {spacing}; expected at most the width of the vehicle over its wheels, {width} m \
+                 (`drive.track_m` plus `drive.wheel_width_m`): a cell of the map would be wider than the vehicle"
+            );
+            return Err(self.error(span, message));
+        }
         let reach = plan.map.reach();
         let sizes = [span(&keys.map_points), span(&keys.map_spacing_m), span(&keys.grid_first_m)];
         if let (Some(span), true) = (sizes.into_iter().flatten().next(), reach < plan.grid.first) {

@@ -419,6 +419,16 @@ fn a_drive_names_its_keys() {
     bad("map_points = 3", "3", &small("0.1", "0.7"));
     bad("map_spacing_m = 0.001", "0.001", &small("0.1", "0.7"));
     bad("grid_first_m = 11\ngrid_last_m = 12", "11", &small("10", "11"));
+    let wide = |spacing: &str, width: &str| {
+        format!(
+            "`drive.map_spacing_m` is {spacing}; expected at most the width of the vehicle over its wheels, {width} m \
+             (`drive.track_m` plus `drive.wheel_width_m`): a cell of the map would be wider than the vehicle"
+        )
+    };
+    bad("map_spacing_m = 1000", "1000", &wide("1000", "1.25"));
+    bad("map_spacing_m = 1.26", "1.26", &wide("1.26", "1.25"));
+    // A vehicle narrower than a cell of the default map: the key that made it so is named.
+    bad("track_m = 0.0625\nwheel_width_m = 0.03125", "0.0625", &wide("0.1", "0.09375"));
     let order = "expected `vector_small_m` or more";
     let by_default = format!("`drive.vector_large_m` is 0.5; {order}, 0.625");
     bad("vector_large_m = 0.5", "0.5", &by_default);
