@@ -94,6 +94,7 @@ if [[ -n $python ]]; then
     rm -r "$work/drive"
     # The second rover: from the images of twenty random grounds to the navigator maps, and the laws of the sensor.
     expect 0 "$python" reference/rover/self_check.py
+    expect 0 "$python" reference/rover/designs_check.py
     expect 0 "$python" reference/rover/grounds.py "$work/grounds"
     for scene in "$work"/grounds/ground*.toml; do
         expect 0 "$raypencil" drive "$scene" --record npy,points,maps -o "$work/drive"

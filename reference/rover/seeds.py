@@ -15,7 +15,8 @@ COUNTS = ["sectors", "with_obstacle", "found", "passed", "missed.by_errors", "mi
           "upper_bound.found", "upper_bound.passed", "upper_bound.false_obstacle", "upper_bound.clear_way_m"]
 # Largest shares that were aimed at: passed, of the obstacles that were found or passed; false, of all sectors.
 GOALS = {"none": (0.01, 0.02), "camera": (0.02, 0.04), "camera and sensors": (0.02, 0.04)}
-HEAD = """| noise | ground | grounds | sectors | with an obstacle | found | passed = missed + not seen | false | clear way | \
+HEAD = """| noise | ground | grounds | sectors | with an obstacle | found | \
+passed = missed by errors + by spacing + by the rule + not seen | false | clear way | \
 exact eyes: found, passed, false, clear way |
 | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"""
 
@@ -36,7 +37,7 @@ def line(noise, ground, rows):
     """A line of the table."""
     total = sums(rows)
     whole = {name: f"{round(value):,}" for name, value in total.items()}
-    missed = round(sum(total[name] for name in COUNTS if name.startswith("missed.")))
+    missed = " + ".join(whole[name] for name in COUNTS if name.startswith("missed."))
     hidden = round(sum(total[name] for name in COUNTS if name.startswith("not_seen.")))
     sectors = max(1.0, total["sectors"])
     bound = (f"{whole['upper_bound.found']}, {whole['upper_bound.passed']}, {whole['upper_bound.false_obstacle']}, "
@@ -54,10 +55,10 @@ def verdict(noise, rows):
     seen = total["found"] + total["passed"]
     passed, wrong = total["passed"] / max(1.0, seen), total["false_obstacle"] / max(1.0, total["sectors"])
     goals = GOALS[noise]
-    met = "met" if passed < goals[0] and wrong < goals[1] else "not met"
+    met = ["met" if share < goal else "not met" for share, goal in zip((passed, wrong), goals)]
     return (f"* *{noise}*: {round(total['passed'])} of {round(seen):,} obstacles that were found or passed are passed "
-            f"({100 * passed:.1f} %; goal: less than {100 * goals[0]:.0f} %), and {100 * wrong:.1f} % of the sectors end at a false one "
-            f"(less than {100 * goals[1]:.0f} %): {met}.")
+            f"({100 * passed:.2f} %; goal: less than {100 * goals[0]:.0f} %: {met[0]}), and {100 * wrong:.2f} % of the sectors end at a "
+            f"false one (less than {100 * goals[1]:.0f} %: {met[1]}).")
 
 
 def page(rows):
