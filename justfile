@@ -39,12 +39,40 @@ same-bits:
     cargo build --release --bin raypencil
     .ci/same_bits.sh target/unoptimised/raypencil target/release/raypencil
 
-# The study of docs/designs.md: 12 drives with a scan at the start; goes on where it was interrupted
+# The study of docs/designs.md: its drives, its tables (out/designs/tables.md, docs/evidence/designs.csv), its charts; an hour or two on
+# two cores; goes on where it was interrupted. `just seeds` comes first: its drives are rows of these tables
 designs:
-    cargo run --release --bin raypencil -- sweep data/designs/rover.toml --list data/designs/pitch.csv \
-        --set terrain.generate.preset=pathfinder,crevassed --set drive.scans=true --set drive.scan_steps=26 --do drive -o out/designs \
-        --chart truth.found_share,beam.0.pitch_down_deg,terrain.generate.preset \
-        --chart truth.upper_bound.found_share,beam.0.pitch_down_deg,terrain.generate.preset
+    cargo build --release --bin raypencil
+    just _design pitch pitch crevassed,pathfinder 4 drive.scan_steps=26
+    just _design heights heights pathfinder 1:4:1 drive.scan_steps=26 \
+        --chart truth.clear_way_mean_m,beam.0.pitch_down_deg,beam.0.position_m --chart truth.upper_bound.clear_way_mean_m,beam.0.pitch_down_deg,beam.0.position_m
+    just _design scans scans pathfinder 1:4:1 drive.scan_steps=26
+    just _design steps steps pathfinder 3:4:1
+    just _design sun sun pathfinder 4 drive.scan_steps=26
+    just _design heights-again heights-again pathfinder 11:14:1 drive.scan_steps=26
+    just _design heights-again-crevassed heights-again crevassed 11:14:1 drive.scan_steps=26
+    just _design scans-again scans-again pathfinder 11:14:1 drive.scan_steps=26
+    just _design scans-again-crevassed scans-again crevassed 11:14:1 drive.scan_steps=26
+    just _design steps-again steps pathfinder 11:14:1
+    just _design sun-again sun-again pathfinder 11:12:1 drive.scan_steps=26
+    just design-tables out/designs out/seeds
+    cp out/designs/heights/charts/truth.clear_way_mean_m-over-beam.0.pitch_down_deg-by-beam.0.position_m.svg docs/figures/designs-clear-way.svg
+    cp out/designs/heights/charts/truth.upper_bound.clear_way_mean_m-over-beam.0.pitch_down_deg-by-beam.0.position_m.svg docs/figures/designs-clear-way-bound.svg
+
+# The tables of the study, from the sweeps' folders: tables.md in STUDY, and docs/evidence/designs.csv
+design-tables STUDY SEEDS:
+    python3 reference/rover/designs.py P={{ STUDY }}/pitch/table.csv \
+        H={{ STUDY }}/heights/table.csv H={{ STUDY }}/heights-again/table.csv H={{ STUDY }}/heights-again-crevassed/table.csv \
+        C={{ STUDY }}/scans/table.csv C={{ STUDY }}/scans-again/table.csv C={{ STUDY }}/scans-again-crevassed/table.csv \
+        T={{ STUDY }}/steps/table.csv T={{ STUDY }}/steps-again/table.csv S={{ STUDY }}/sun/table.csv \
+        S={{ STUDY }}/sun-again/table.csv N={{ SEEDS }}/table.csv \
+        --pair H9,H3 --pair H9,H1 --pair H7,H1 --pair H3,H1 --pair H5,H4 --pair H6,H5 --pair H9,H8 --pair H4,C1 --pair H6,C2 \
+        --pair T1,H4 --pair T2,H9 --pair S3,S2 --pair N2,N1 --pair N3,N2 --drives docs/evidence/designs.csv -o {{ STUDY }}/tables.md
+
+_design NAME LIST PRESETS SEEDS *MORE:
+    target/release/raypencil sweep data/designs/rover.toml --list data/designs/{{ LIST }}.csv --set terrain.generate.preset={{ PRESETS }} \
+        --set terrain.generate.seed={{ SEEDS }} --set drive.scans=true {{ if MORE == "" { "" } else { "--set " + MORE } }} --do drive \
+        -o out/designs/{{ NAME }}
 
 # The rover with a scan on ten grounds of each kind, without noise, with that of the camera, and with that of the sensors, and exact eyes
 # beside each: out/seeds/seeds.md. 180 drives, hours on two cores; goes on where it was interrupted

@@ -114,6 +114,11 @@ def metres(result, sign=""):
     return f"{value:{sign}.2f} m" + (f" [{ends[0]:{sign}.2f}, {ends[1]:{sign}.2f}]" if ends else "")
 
 
+def span(seeds):
+    """The seeds, in words."""
+    return f"{min(seeds)} to {max(seeds)}" if len(set(seeds)) > 1 else str(seeds[0])
+
+
 def words(drive):
     """What the design is, in words."""
     texts = [WORDS.get(key, lambda value, key=key: f"{key} {value}")(drive.row[key]) for key in sorted(drive.keys, key=ORDER)]
@@ -126,7 +131,7 @@ def line(name, drives):
     first = drives[0]
     count = {key: round(sum(drive[key] for drive in drives))
              for key in ["with_obstacle", "found", "passed", "false_obstacle", "upper_bound.found", "sectors"]}
-    return [name, words(first), f"`{first.preset}`", f"{first.seed} to {drives[-1].seed}" if len(drives) > 1 else str(first.seed),
+    return [name, words(first), f"`{first.preset}`", span([drive.seed for drive in drives]),
             count["with_obstacle"], f"{count['found']}: {percent(interval(drives, share('found')))}",
             f"{count['upper_bound.found']}: {percent(interval(drives, share('upper_bound.found')))}",
             count["passed"], f"{count['false_obstacle']} ({100 * count['false_obstacle'] / count['sectors']:.1f} %)",
@@ -204,7 +209,7 @@ def page(letters, pairs):
                 own = [pair for (preset, _), pair in sorted(both.items()) if preset in some]
                 seeds = [drive.seed for drive, _ in own]
                 where = f"`{some[0]}`" if len(some) == 1 else "all"
-                lines.append(compared([f"{one} less {other}", where, f"{min(seeds)} to {max(seeds)}"], own))
+                lines.append(compared([f"{one} less {other}", where, span(seeds)], own))
     if lines:
         out.append(table(["rows", "ground", "seeds", "grounds", "found", "difference of shares, points", "grounds with more / as many / fewer",
                           "difference of clear ways", "grounds with longer / equal / shorter"], lines))
