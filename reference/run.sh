@@ -102,6 +102,15 @@ if [[ -n $python ]]; then
         tail -n 1 "$work/output"
         rm -r "$work/drive"
     done
+    # The vehicle's truth once more; that of other limits is found.
+    expect 0 "$python" reference/rover/truth.py --make "$work/truth"
+    for rules in tips steps default; do
+        rm -rf "$work/drive"
+        expect 0 "$raypencil" drive "$work/truth/$rules.toml" --record poses -o "$work/drive"
+        expect 0 "$python" reference/rover/truth.py "$work/truth/$rules.toml" "$work/drive/recording"
+    done
+    expect 1 "$python" reference/rover/truth.py "$work/truth/tips.toml" "$work/drive/recording"
+    rm -r "$work/drive" "$work/truth"
     for camera in ideal ccd_1989 cmos; do
         expect 0 "$raypencil" drive "$work/grounds/sensor-$camera.toml" --record npy -o "$work/sensor/$camera"
     done
