@@ -19,7 +19,7 @@
 //! is half a unit in the last place of its type, of a vector that of its largest part. Of a point of a cloud it is the length of the vector
 //! of half units, which no turn of axes changes, so it holds for t along the ray and for each part of the point in any frame.
 //!
-//! A value that is not a number is wrong.
+//! A value that is not a number is wrong, and so is a ray of which one array says that it hits something and another that it does not.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -151,6 +151,9 @@ impl Judge<'_> {
     fn ray(&self, index: usize, ray: &CastRay) -> Judged {
         let read = self.exact.reading(ray, self.sides);
         let judged = |verdict| Judged { verdict, is_met: !matches!(read, Reading::Miss), ratios: [None; 7] };
+        if let Some(wrong) = self.disagreement(index) {
+            return judged(RayVerdict::Wrong(wrong));
+        }
         let stated = match self.stated_reading(index, ray, &read) {
             Ok(stated) => stated,
             Err(wrong) => return judged(RayVerdict::Wrong(wrong)),
@@ -181,6 +184,36 @@ impl Judge<'_> {
                 Judged { ratios, ..judged(wrong.map_or(same, RayVerdict::Wrong)) }
             }
         }
+    }
+
+    /// Where one array says that a ray hits something, and another that it does not.
+    fn disagreement(&self, index: usize) -> Option<Wrong> {
+        let (by, is_hit) = self.stated.speaks(index);
+        if let Some(hit) = self.stated.hit.as_ref().map(|hit| hit[index]).filter(|hit| *hit != is_hit) {
+            return Some(Wrong::Disagreement { by, is_hit, of: "hit", number: f64::from(u8::from(hit)) });
+        }
+        let says_otherwise = |value: &CastValue| {
+            let parts = self.stated.part(*value, index)?;
+            let is_number = parts.iter().any(|part| part.is_finite());
+            let otherwise = match (value, is_hit) {
+                (CastValue::T | CastValue::Range, true) => !parts[0].is_finite(),
+                (_, true) => false,
+                (CastValue::T | CastValue::Range | CastValue::CosIncidence, false) => parts[0].is_finite(),
+                (CastValue::Point, false) => is_number,
+                // A side that is not said is 0, and no normal is 0 long, nor are weights 0.
+                (CastValue::Side | CastValue::Normal | CastValue::Barycentric, false) => {
+                    is_number && parts != [0.0; 3]
+                }
+            };
+            let number = parts.into_iter().find(|part| part.is_finite() || is_hit);
+            otherwise.then_some(Wrong::Disagreement {
+                by,
+                is_hit,
+                of: value.name(),
+                number: number.unwrap_or(parts[0]),
+            })
+        };
+        CastValue::ALL.iter().find_map(says_otherwise)
     }
 
     /// What is stated: a face, or why there is none.

@@ -4,13 +4,14 @@ use glam::DVec3;
 use raypencil_scene::{CastRay, FaceId, Side, Sides, Triangles};
 
 use super::verdict::CastValue;
-use crate::answers::{Answers, FirstHit};
+use crate::answers::{Answers, FirstHit, side_number};
 
 /// First hits as another program states them: for each quantity that it gives, one value for each ray, in their order.
 ///
 /// Whether a ray hits is said by `face` if it is given, else by `t`, else by `range`, else by `hit`: at least one of them must be. Where
 /// it does not, both distances say why: -Inf says that what is hit is too near, +Inf that nothing is hit. `face` or `hit` alone says
-/// neither, nor does NaN. Other values of rays that do not hit have no meaning.
+/// neither, nor does NaN. The others have to say the same: where nothing is hit, no value is a number (of a normal and of weights
+/// (0, 0, 0) is none either), and where something is hit, both distances are.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Stated {
     /// The face; `None` where nothing is hit, or what is hit is too near.
@@ -70,6 +71,59 @@ impl StoredErrors {
 }
 
 impl Stated {
+    /// The array that says whether a ray hits, and what it says.
+    pub(crate) fn speaks(&self, index: usize) -> (&'static str, bool) {
+        if let Some(faces) = &self.face {
+            return ("face", faces[index].is_some());
+        }
+        if let Some(t) = &self.t {
+            return ("t", t[index].is_finite());
+        }
+        match (&self.range, &self.hit) {
+            (Some(range), _) => ("range", range[index].is_finite()),
+            (None, Some(hit)) => ("hit", hit[index]),
+            (None, None) => unreachable!("faces, distances or hits"),
+        }
+    }
+
+    /// Takes the values of rays away that hit nothing by their own words, where `is_none` says of each part of a value, and of how far
+    /// storing may have moved it, that it stands for none.
+    pub(crate) fn without_values(&mut self, is_none: impl Fn(f64, f64) -> bool) {
+        let count = [&self.t, &self.range].into_iter().flatten().map(Vec::len).next();
+        let count = count.or(self.face.as_ref().map(Vec::len)).or(self.hit.as_ref().map(Vec::len));
+        for index in 0..count.unwrap_or(0) {
+            if self.speaks(index).1 {
+                continue;
+            }
+            let error = |value| self.stored.of(value, index);
+            let [of_point, of_normal, of_weights, of_cos] =
+                [CastValue::Point, CastValue::Normal, CastValue::Barycentric, CastValue::CosIncidence]
+                    .map(error);
+            let of_vectors = [
+                (&mut self.point, of_point),
+                (&mut self.normal, of_normal),
+                (&mut self.barycentric, of_weights),
+            ];
+            for (vectors, error) in of_vectors {
+                let vector = vectors.as_mut().map(|vectors| &mut vectors[index]);
+                if let Some(vector) = vector.filter(|v| v.to_array().iter().all(|part| is_none(*part, error)))
+                {
+                    *vector = DVec3::NAN;
+                }
+            }
+            if let Some(cos) = self.cos_incidence.as_mut().map(|cosines| &mut cosines[index])
+                && is_none(*cos, of_cos)
+            {
+                *cos = f64::NAN;
+            }
+            if let Some(side) = self.side.as_mut().map(|sides| &mut sides[index])
+                && side.is_some_and(|side| is_none(f64::from(side_number(side)), 0.0))
+            {
+                *side = None;
+            }
+        }
+    }
+
     /// What the tracer answers, on all threads.
     pub fn by_tracer(mesh: &Triangles, rays: &[CastRay], sides: Sides) -> Self {
         Self::of(&Answers::by_tracer(mesh, rays, sides))

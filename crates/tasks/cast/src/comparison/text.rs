@@ -83,6 +83,12 @@ pub(crate) fn wrong_text(wrong: &Wrong) -> String {
         Wrong::Something { exact: Reading::TooNear } => format!("a hit; exactly {TOO_NEAR}"),
         Wrong::Something { .. } => "a hit; exactly nothing is hit".into(),
         Wrong::Contradiction => "one of t and range is -Inf, too near, and the other is not".into(),
+        Wrong::Disagreement { by, is_hit: true, of, number } => {
+            format!("{by} says that something is hit, and {of} is {number}")
+        }
+        Wrong::Disagreement { by, is_hit: false, of, number } => {
+            format!("{by} says that nothing is hit, and {of} is {number}")
+        }
         Wrong::Value { value, error, bound } => {
             format!("{} is off by {error:.3e}; rounding explains {bound:.3e}", value.name())
         }

@@ -64,6 +64,17 @@ pub enum Wrong {
     },
     /// One of t and range says that what is hit is too near, the other that nothing is hit.
     Contradiction,
+    /// One array says that the ray hits something, another that it does not.
+    Disagreement {
+        /// The array that says which rays hit.
+        by: &'static str,
+        /// Whether that one says so.
+        is_hit: bool,
+        /// The other one.
+        of: &'static str,
+        /// What it has; of a vector the first part, of a truth value 1 or 0.
+        number: f64,
+    },
     /// The face is right and a value is not.
     Value {
         /// Which value.

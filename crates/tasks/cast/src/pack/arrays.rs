@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use raypencil_referee::ExactCast;
-use raypencil_scene::{FaceId, Reading, Sides};
+use raypencil_scene::{Reading, Sides};
 
 use super::mistakes::{Extra, Group, misses_at};
 use super::trial::Trial;
@@ -119,19 +119,32 @@ pub(super) fn constants(trial: &Trial, exact: &ExactCast<'_>, sides: Sides) -> V
     let stated = &trial.stated;
     let distance = |array: &Option<Vec<f64>>, k: usize| array.as_ref().map(|array| array[k]);
     let face = |k: usize| stated.face.as_ref().and_then(|faces| faces[k]).map(|face| f64::from(face.0));
-    let mut found: Vec<f64> =
-        [one(&|k| distance(&stated.t, k)), one(&|k| distance(&stated.range, k)), one(&face)]
-            .into_iter()
-            .flatten()
-            .collect();
+    let point = |k: usize| {
+        let [x, y, z] = stated.point.as_ref()?[k].to_array();
+        (x == y && y == z).then_some(x)
+    };
+    let of_arrays = [
+        one(&|k| distance(&stated.t, k)),
+        one(&|k| distance(&stated.range, k)),
+        one(&face),
+        one(&point),
+        one(&|k| distance(&stated.cos_incidence, k)),
+    ];
+    let mut found: Vec<f64> = of_arrays.into_iter().flatten().collect();
     found.dedup();
     let extra = |number: f64| {
         let text = if number.abs() < 1e15 { number.to_string() } else { format!("{number:e}") };
         let words = format!("{text} means no hit: declare --miss {text}");
         let undo = move |trial: &mut Trial| {
+            // Where a distance says that the ray hits, the number is a face.
+            let lengths = trial.stated.t.as_ref().or(trial.stated.range.as_ref());
+            let hits: Option<Vec<bool>> =
+                lengths.map(|lengths| lengths.iter().map(|t| t.is_finite() && *t != number).collect());
+            let is_hit = |index: usize| hits.as_ref().is_some_and(|hits| hits[index]);
+            for (index, face) in trial.stated.face.iter_mut().flatten().enumerate() {
+                *face = face.filter(|face| f64::from(face.0) != number || is_hit(index));
+            }
             misses_at(trial, number, f64::INFINITY);
-            let is_face = |face: &FaceId| f64::from(face.0) != number;
-            trial.stated.face.iter_mut().flatten().for_each(|face| *face = face.filter(is_face));
         };
         Extra { words, undo: Box::new(undo), is_common: true, group: Group::Others }
     };

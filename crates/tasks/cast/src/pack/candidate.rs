@@ -23,9 +23,10 @@ pub struct CloudConventions<'a> {
 /// What a candidate declares of its arrays.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct CandidateConventions<'a> {
-    /// A number that means "no hit" in `t` and `range`, and in `face` where neither of them says that the ray hits; of a cloud in all
-    /// three coordinates. Files of fewer digits hold it rounded. NaN and +Inf, and faces of -1 or 4294967295, always mean "no hit". -Inf
-    /// in `t` and `range` says that what is hit is too near, unless it is this number.
+    /// A number that means "no hit" in `t` and `range`, in `face` where no distance, and without distances no point, says that the ray hits,
+    /// and in all other values of rays that miss; of a cloud in all three coordinates. Files of fewer digits hold it rounded. NaN and
+    /// +Inf, and faces of -1 or 4294967295, always mean "no hit". -Inf in `t` and `range` says that what is hit is too near, unless it
+    /// is this number.
     pub miss: Option<f64>,
     /// Leave out `face.npy`.
     pub ignores_faces: bool,
@@ -66,14 +67,19 @@ pub fn read_candidate(
         Ok((distances, errors))
     };
     let ((t, of_t), (range, of_range)) = (distance("t")?, distance("range")?);
-    // A distance says itself which rays hit: a face is then no number for "no hit", whatever its index.
-    let hits = |ray: usize| {
-        let length = t.as_ref().or(range.as_ref());
-        length.is_some_and(|length: &Vec<f64>| length[ray].is_finite())
-    };
     let vectors = |name: &str| -> Result<Stored<DVec3>, FileError> {
         let (numbers, errors) = reader.numbers(name, &[3])?;
         Ok((numbers.map(|numbers| numbers.chunks_exact(3).map(DVec3::from_slice).collect()), errors))
+    };
+    let (point, of_point) = vectors("point")?;
+    // A distance says itself which rays hit, else a point: a face is then no number for "no hit", whatever its index.
+    let hits = |ray: usize| match t.as_ref().or(range.as_ref()) {
+        Some(lengths) => lengths[ray].is_finite(),
+        None => point.as_ref().is_some_and(|points: &Vec<DVec3>| {
+            let point = points[ray];
+            let is_none = |part: &f64| conventions.means_miss(*part, error_of(&of_point, ray));
+            point.is_finite() && !point.to_array().iter().all(is_none)
+        }),
     };
     // Single precision rounds 4294967295 to 4294967296, which is no face either.
     let none = [-1.0, f64::from(u32::MAX), f64::from(u32::MAX as f32)];
@@ -96,15 +102,16 @@ pub fn read_candidate(
         }
     }
     .transpose()?;
-    let side = reader.numbers("side", &[])?.0.map(|numbers| {
-        let side = |number: f64| match number {
+    let (sides, of_side) = reader.numbers("side", &[])?;
+    let side = sides.as_ref().map(|numbers| {
+        let side = |number: &f64| match *number {
             number if number > 0.0 => Some(Side::Front),
             number if number < 0.0 => Some(Side::Back),
             _ => None,
         };
-        numbers.into_iter().map(side).collect()
+        numbers.iter().map(side).collect()
     });
-    let ((point, of_point), (normal, of_normal)) = (vectors("point")?, vectors("normal")?);
+    let (normal, of_normal) = vectors("normal")?;
     let (barycentric, of_barycentric) = vectors("barycentric")?;
     let (cos_incidence, of_cos_incidence) = reader.numbers("cos_incidence", &[])?;
     let stored = StoredErrors {
@@ -115,7 +122,7 @@ pub fn read_candidate(
         barycentric: of_barycentric,
         cos_incidence: of_cos_incidence,
     };
-    let stated = Stated {
+    let mut stated = Stated {
         face,
         t,
         range,
@@ -136,6 +143,13 @@ pub fn read_candidate(
         };
         let fault = Fault::new("folder", found, expected);
         return Err(FileError::Array(fault.in_file(folder)));
+    }
+    stated.without_values(|number, error| conventions.means_miss(number, error));
+    // A side is a number of its own before it is one.
+    for (ray, number) in sides.iter().flatten().enumerate() {
+        if !stated.speaks(ray).1 && conventions.means_miss(*number, error_of(&of_side, ray)) {
+            stated.side.iter_mut().for_each(|sides| sides[ray] = None);
+        }
     }
     Ok(stated)
 }

@@ -118,6 +118,9 @@ pub(super) fn misses_at(trial: &mut Trial, number: f64, other: f64) {
     };
     each(&mut trial.stated.t, miss);
     each(&mut trial.stated.range, miss);
+    if !other.is_finite() && number.is_finite() {
+        trial.stated.without_values(|part, error| (part - number).abs() <= error);
+    }
 }
 
 /// Conventions of the numbers of faces.
@@ -299,8 +302,23 @@ pub(super) const OF_MISSES: &[Mistake] = &[
     Mistake {
         words: "0 means no hit: declare --miss 0",
         undo: |trial| {
+            // Where a distance or a point says that the ray hits, face 0 is a face.
+            let stated = &trial.stated;
+            let lengths = stated.t.as_ref().or(stated.range.as_ref());
+            let hits: Option<Vec<bool>> = match (lengths, &stated.point) {
+                (Some(lengths), _) => {
+                    Some(lengths.iter().map(|length| length.is_finite() && *length != 0.0).collect())
+                }
+                (None, Some(points)) => {
+                    Some(points.iter().map(|point| point.is_finite() && *point != DVec3::ZERO).collect())
+                }
+                (None, None) => None,
+            };
+            let is_hit = |index: usize| hits.as_ref().is_some_and(|hits| hits[index]);
+            each(&mut trial.stated.face, |index, face| {
+                *face = face.filter(|face| face.0 != 0 || is_hit(index));
+            });
             misses_at(trial, 0.0, f64::INFINITY);
-            each(&mut trial.stated.face, |_, face| *face = face.filter(|face| face.0 != 0));
         },
     },
     Mistake {

@@ -323,7 +323,14 @@ impl RayPackChecked {
 
     /// A wrong ray, for people and for programs.
     fn wrong_ray(&self, bundle: &str, index: usize, wrong: &Wrong) -> WrongRay {
-        let words = wrong_text(wrong);
+        // A cloud has points in place of arrays.
+        let of_point = match wrong {
+            Wrong::Disagreement { by: "t", is_hit, of, number } if self.cloud.is_some() => {
+                Some(Wrong::Disagreement { by: "the point", is_hit: *is_hit, of, number: *number })
+            }
+            _ => None,
+        };
+        let words = wrong_text(of_point.as_ref().unwrap_or(wrong));
         let (value, exact) = said_and_true(wrong);
         let (key, quantity, difference, ratio) = match wrong {
             Wrong::Value { value, error, bound } => {
@@ -370,6 +377,7 @@ fn said_and_true(wrong: &Wrong) -> (String, Option<String>) {
         ),
         Wrong::Something { exact } => ("a hit".into(), Some(face(exact))),
         Wrong::Contradiction => ("too near in one of t and range".into(), None),
+        Wrong::Disagreement { of, number, .. } => (format!("{of} {number}"), None),
         Wrong::Value { value, .. } => (value.name().into(), None),
     }
 }

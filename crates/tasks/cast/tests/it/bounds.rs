@@ -86,6 +86,10 @@ fn wrong(stated: &Stated, precision: Precision) -> Option<CastValue> {
     match verdicts[0] {
         RayVerdict::Same { .. } => None,
         RayVerdict::Wrong(Wrong::Value { value, .. }) => Some(value),
+        // A distance that is no number says that nothing is hit.
+        RayVerdict::Wrong(Wrong::Disagreement { is_hit: true, of, .. }) => {
+            CastValue::ALL.into_iter().find(|value| value.name() == of)
+        }
         ref other => panic!("{other:?}"),
     }
 }

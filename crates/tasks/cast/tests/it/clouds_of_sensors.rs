@@ -76,6 +76,30 @@ fn noise_of_the_size_of_a_step_is_no_step() {
     assert_eq!(trial.judge(&both, Fields::None, SENSOR).why, None);
 }
 
+#[test]
+fn a_range_without_a_point_is_wrong_unless_it_is_none() {
+    let trial = Trial::new(&head(), &still());
+    let right = points(&trial.set, SENSOR);
+    let is_miss = |one: &Point| !one.place.is_finite();
+    let with = |range: f64| -> Vec<Point> {
+        right
+            .iter()
+            .map(|one| Point { range: if is_miss(one) { range } else { one.range }, ..*one })
+            .collect()
+    };
+    let misses = right.iter().filter(|one| is_miss(one)).count() as u64;
+    assert!(misses > 10);
+    for none in [f64::NAN, f64::INFINITY] {
+        assert!(trial.judge(&with(none), Fields::Range, SENSOR).passes());
+    }
+    for range in [0.0, 5.0] {
+        let checked = trial.judge(&with(range), Fields::Range, SENSOR);
+        assert_eq!((checked.passes(), checked.comparison.counts().wrong), (false, misses));
+        let words = format!("if {range} in the field range means no hit: declare --miss {range}");
+        expect(&checked, &words);
+    }
+}
+
 /// Rays of the head in the pattern's frame, with the point of each where it meets something.
 fn with_misses_at(trial: &Trial, distance: f64, farthest: f64) -> Vec<Point> {
     let asked = head().rays("rays").expect("rays").rays;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use raypencil_cast::{
     CandidateConventions, CastSource, Questions, RayArray, RayPackChecked, cast, check_ray_pack,
-    rays_from_bytes, write_answers, write_ray_pack,
+    comparison_text, rays_from_bytes, write_answers, write_ray_pack,
 };
 use raypencil_files::{read_npy_numbers, write_npy_numbers};
 use raypencil_scene::{CastRay, Precision, Sides, Silent, Triangles};
@@ -455,6 +455,79 @@ fn a_declared_number_is_no_face_of_rays_that_hit_and_is_rounded_as_it_is_stored(
         };
         assert!(passes(miss), "{miss}, half {is_half}");
         assert!(!passes(miss + unit), "a unit beside {miss}, half {is_half}");
+    }
+}
+
+/// One array says that a ray hits, another that it does not.
+#[test]
+fn answers_that_disagree_with_themselves_are_wrong_whatever_is_right() {
+    let right = Folders::right;
+    let rays = right().of("t");
+    let misses: Vec<usize> = (0..rays.len()).filter(|&ray| rays[ray].is_infinite()).collect();
+    let hits: Vec<usize> = (0..rays.len()).filter(|&ray| rays[ray].is_finite()).collect();
+    let (miss, hit) = (misses[2], hits[5]);
+    let at = |name: &str, ray: usize, parts: usize, number: f64| {
+        right().change(name, move |index, value| if index / parts == ray { number } else { value })
+    };
+    let wrong = |folders: &Folders, ray: usize, words: &str| {
+        let checked = folders.check();
+        let found: Vec<_> = checked.comparison.wrong().collect();
+        assert!(!checked.passes() && found.len() == 1 && found[0].0 == ray, "{words}: {found:?}");
+        let text = comparison_text("mine", &checked.comparison, |_| String::new());
+        assert!(text.contains(words), "{words}: {text}");
+    };
+    // A value where the face, or else the first distance, says that nothing is hit.
+    for (name, parts, number) in [
+        ("t", 1, 5.0),
+        ("range", 1, 5.0),
+        ("side", 1, -1.0),
+        ("point", 3, 0.0),
+        ("normal", 3, 0.5),
+        ("barycentric", 3, 0.25),
+        ("cos_incidence", 1, 0.0),
+    ] {
+        let words = format!("face says that nothing is hit, and {name} is {number}");
+        wrong(&at(name, miss, parts, number), miss, &words);
+        // `t` leads where there is no face.
+        if name != "t" {
+            let words = format!("t says that nothing is hit, and {name} is {number}");
+            wrong(&at(name, miss, parts, number).without(&["face"]), miss, &words);
+        }
+        // Of two arrays too.
+        let two = at(name, miss, parts, number);
+        let all = ["t", "range", "side", "point", "normal", "barycentric", "cos_incidence"];
+        let others: Vec<&str> = all.into_iter().filter(|other| *other != name).collect();
+        wrong(&two.without(&others), miss, "face says that nothing is hit");
+    }
+    // A face whose distance says that nothing is hit.
+    for (name, number) in [("t", f64::INFINITY), ("range", f64::NAN), ("t", f64::NEG_INFINITY)] {
+        let said = if number.is_nan() { f64::INFINITY } else { number };
+        wrong(
+            &at(name, hit, 1, number),
+            hit,
+            &format!("face says that something is hit, and {name} is {said}"),
+        );
+    }
+    // No normal and no weights are (0, 0, 0).
+    let none = at("normal", miss, 3, 0.0);
+    let weights = at("barycentric", miss, 3, 0.0).of("barycentric");
+    assert!(none.change("barycentric", move |index, _| weights[index]).check().passes());
+    // A number that is declared is none, as it is stored; another one is.
+    let all = ["t", "range", "point", "normal", "barycentric", "cos_incidence"];
+    for (number, is_single) in [(7.5, false), (0.1, true), (0.0, false)] {
+        let filled = all.iter().fold(right(), |folders, name| {
+            folders.change(name, move |_, value| if value.is_finite() { value } else { number })
+        });
+        let filled = if is_single { filled.store(false, 0, &all) } else { filled };
+        let declared = |miss| CandidateConventions { miss: Some(miss), ..CandidateConventions::default() };
+        let checked = filled.check_by(Precision::F64, declared(number));
+        assert!(checked.passes(), "{number}: {:?}", checked.comparison.wrong().next());
+        assert!(!filled.check_by(Precision::F64, declared(8.5)).passes());
+        let words = format!("if {number} means no hit: declare --miss {number}");
+        // Single precision has another number, which is not 0.1.
+        if !is_single {
+            filled.expect_why(&["100.0000 %", &words]);
+        }
     }
 }
 

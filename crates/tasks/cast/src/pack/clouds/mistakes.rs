@@ -12,6 +12,7 @@ use super::places::{of_exchanged_channels, of_order, of_returns};
 use super::read::{CloudCase, pose_of};
 use super::turn::{Turn, azimuth_deg, turned, wrapped_deg};
 use crate::cloud::CloudFrame;
+use crate::comparison::Stated;
 use crate::pack::mistakes::OfCloud;
 use crate::pack::scan::{Scan, moved};
 use crate::pack::trial::Trial;
@@ -302,6 +303,18 @@ const UNITS_OF_RANGE: [(f64, &str); 4] = [
 /// A factor and a length by which the field `range` alone is off, beside points that are right.
 fn estimate_field(list: &mut List<'_>, trial: &Trial, range_of: &dyn Fn(&CastRay) -> Option<f64>) {
     let Some(field) = &trial.stated.range else { return };
+    let t = trial.stated.t.iter().flatten();
+    let mut of_misses = field.iter().zip(t).filter(|(_, t)| !t.is_finite()).map(|(range, _)| *range);
+    if let Some(number) =
+        of_misses.next().filter(|number| number.is_finite() && of_misses.all(|other| other == *number))
+    {
+        let words = format!("{number} in the field range means no hit: declare --miss {number}");
+        list.add(words, true, move |trial| {
+            let Stated { t, range, .. } = &mut trial.stated;
+            let pairs = range.iter_mut().flatten().zip(t.iter().flatten());
+            pairs.filter(|(_, t)| !t.is_finite()).for_each(|(range, _)| *range = f64::INFINITY);
+        });
+    }
     let every = trial.rays.len().div_ceil(MAX_FITTED).max(1);
     let some = (0..trial.rays.len()).step_by(every).filter(|&k| field[k].is_finite());
     let pairs: Vec<(f64, f64)> = some.filter_map(|k| Some((field[k], range_of(&trial.rays[k])?))).collect();
