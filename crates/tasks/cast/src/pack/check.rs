@@ -288,7 +288,8 @@ fn judge(
     progress.stage(&format!("comparing {} rays", rays.len()));
     let comparison = compare_with(exact, mesh, rays, sides, stated, precision);
     let wrong: Vec<usize> = comparison.wrong().map(|(index, _)| index).collect();
-    let why = (!wrong.is_empty()).then(|| {
+    let is_silent = says_nothing(stated, rays.len());
+    let why = (!wrong.is_empty() && !is_silent).then(|| {
         progress.stage("looking for a mistake that explains the wrong rays");
         let of_cloud = case.as_ref().map(|case| of_cloud(case, exact, sides));
         let stated = (stated, of_cloud.as_ref());
@@ -308,10 +309,20 @@ fn judge(
     let cloud = case.map(|case| case.facts);
     let of_fields = cloud.as_ref().and_then(CloudFacts::why);
     let why = match why {
+        // Whatever makes every ray a miss would explain it.
+        None if is_silent && !wrong.is_empty() => Some("every ray is a miss: nothing at all is hit".into()),
         Some(explanation) => explanation.map(|explanation| explanation.sentence()),
         None => of_fields.map(|words| format!("100.0000 % agree if {words}")),
     };
     Judged { comparison, why, answers, cloud }
+}
+
+/// Whether every ray is said to miss.
+fn says_nothing(stated: &Stated, count: usize) -> bool {
+    let is_near = |ray: usize| {
+        [&stated.t, &stated.range].into_iter().flatten().any(|lengths| lengths[ray] == f64::NEG_INFINITY)
+    };
+    (0..count).all(|ray| !stated.speaks(ray).1 && !is_near(ray))
 }
 
 /// Refuses a pack whose own returns are not the exact ones.

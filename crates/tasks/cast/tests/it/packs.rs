@@ -531,6 +531,29 @@ fn answers_that_disagree_with_themselves_are_wrong_whatever_is_right() {
     }
 }
 
+/// What makes every ray a miss explains a program that hits nothing, as much as anything does.
+#[test]
+fn a_program_that_hits_nothing_is_told_so() {
+    let nothing = "every ray is a miss: nothing at all is hit";
+    let none = || {
+        let silent = Folders::right().change("face", |_, _| -1.0);
+        ["t", "range"].iter().fold(silent, |folders, name| folders.change(name, |_, _| f64::INFINITY))
+    };
+    let all = ["side", "point", "normal", "barycentric", "cos_incidence"];
+    assert_eq!(none().without(&all).check().why.as_deref(), Some(nothing));
+    assert_eq!(none().without(&all).without(&["face", "t"]).check().why.as_deref(), Some(nothing));
+    // Few rays hit, and these are wrong.
+    let text: String = (0..64).map(|k| format!("{k},0.25,3,0.125,0,-1\n")).collect();
+    let rays = rays_from_bytes(text.as_bytes(), "here".as_ref()).unwrap();
+    let [pack, candidate] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+    write_ray_pack(pack.path(), (&cube(), &rays, Sides::Both), &source(), &Silent).unwrap();
+    write_npy_numbers(candidate.path().join("face.npy"), &[64], &[-1.0; 64]).unwrap();
+    let conventions = CandidateConventions::default();
+    let checked =
+        check_ray_pack(pack.path(), candidate.path(), Precision::F64, conventions, &Silent).unwrap();
+    assert_eq!((checked.comparison.counts().wrong, checked.why.as_deref()), (1, Some(nothing)));
+}
+
 #[test]
 fn errors_without_a_rule_are_not_explained() {
     let checked = Folders::right().change("t", |index, t| t + 1e-3 * (index % 7) as f64).check();
