@@ -94,7 +94,7 @@ pub fn compare_with(
 
 impl Stated {
     /// The parts of a value of a ray, if it is given: one or three numbers; a side is 1 or -1, and 0 if it is not said.
-    fn part(&self, value: CastValue, index: usize) -> Option<[f64; 3]> {
+    pub(crate) fn part(&self, value: CastValue, index: usize) -> Option<[f64; 3]> {
         let number = |array: &Option<Vec<f64>>| Some([*array.as_ref()?.get(index)?, 0.0, 0.0]);
         let vector = |array: &Option<Vec<DVec3>>| Some(array.as_ref()?.get(index)?.to_array());
         match value {
@@ -108,6 +108,27 @@ impl Stated {
             CastValue::Normal => vector(&self.normal),
             CastValue::Barycentric => vector(&self.barycentric),
             CastValue::CosIncidence => number(&self.cos_incidence),
+        }
+    }
+}
+
+impl CastValue {
+    /// Whether it has three numbers.
+    pub(crate) fn is_vector(self) -> bool {
+        matches!(self, Self::Point | Self::Normal | Self::Barycentric)
+    }
+
+    /// The exact parts, as [`Stated::part`] has those that are stated.
+    pub(crate) fn exact(self, hit: &CastHit) -> [f64; 3] {
+        let three = |parts: [Rounded; 3]| parts.map(|part| part.double);
+        match self {
+            Self::T => [hit.t.double, 0.0, 0.0],
+            Self::Range => [hit.range.double, 0.0, 0.0],
+            Self::Side => [f64::from(side_number(hit.side)), 0.0, 0.0],
+            Self::Point => three(hit.point),
+            Self::Normal => three(hit.normal),
+            Self::Barycentric => three(hit.barycentric),
+            Self::CosIncidence => [hit.cos_incidence.double, 0.0, 0.0],
         }
     }
 }
@@ -380,16 +401,7 @@ impl Judge<'_> {
         let mut ratios = [None; 7];
         for value in CastValue::ALL {
             let Some(stated) = self.stated.part(value, index) else { continue };
-            let three = |parts: [Rounded; 3]| parts.map(|part| part.double);
-            let exact = match value {
-                CastValue::T => [hit.t.double, 0.0, 0.0],
-                CastValue::Range => [hit.range.double, 0.0, 0.0],
-                CastValue::Side => [f64::from(side_number(hit.side)), 0.0, 0.0],
-                CastValue::Point => three(hit.point),
-                CastValue::Normal => three(hit.normal),
-                CastValue::Barycentric => three(hit.barycentric),
-                CastValue::CosIncidence => [hit.cos_incidence.double, 0.0, 0.0],
-            };
+            let exact = value.exact(hit);
             let differences = [0, 1, 2].map(|k: usize| (stated[k] - exact[k]).abs());
             // NaN counts as the worst.
             let worst = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };

@@ -68,6 +68,20 @@ impl StoredErrors {
         };
         errors.as_ref().map_or(0.0, |errors| errors[index])
     }
+
+    /// Adds to the error of a value of one of so many rays.
+    pub(crate) fn widen(&mut self, value: CastValue, (index, count): (usize, usize), by: f64) {
+        let errors = match value {
+            CastValue::T => &mut self.t,
+            CastValue::Range => &mut self.range,
+            CastValue::Point => &mut self.point,
+            CastValue::Normal => &mut self.normal,
+            CastValue::Barycentric => &mut self.barycentric,
+            CastValue::CosIncidence => &mut self.cos_incidence,
+            CastValue::Side => return,
+        };
+        errors.get_or_insert_with(|| vec![0.0; count])[index] += by;
+    }
 }
 
 impl Stated {

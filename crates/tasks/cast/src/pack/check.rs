@@ -11,6 +11,7 @@ use super::PACK_NAME;
 use super::arrays::{axes, constants, orders};
 use super::candidate::{CandidateConventions, read_candidate};
 use super::clouds::{BeamQuestion, CloudCase, CloudFacts, is_cloud, of_cloud, read_cloud_of};
+use super::decimals::decimals;
 use super::explain::explain;
 use super::lengths::lengths;
 use super::mistakes::OfArrays;
@@ -295,15 +296,24 @@ fn judge(
         let stated = (stated, of_cloud.as_ref());
         let numbers = |trial: &Trial| {
             let mut found = lengths(trial, exact, sides);
+            found.extend(decimals(trial));
             found.extend(constants(trial, exact, sides));
             found
         };
-        let alone: Vec<_> = match case {
-            None => orders(stated.0, shape).into_iter().chain(axes(stated.0)).collect(),
-            Some(_) => Vec::new(),
+        let (orders, axes) = match case {
+            None => (orders(stated.0, shape), axes(stated.0)),
+            Some(_) => (Vec::new(), Vec::new()),
         };
-        let of_arrays = OfArrays { numbers: &numbers, alone: &alone };
-        explain(exact, mesh, (rays, sides), stated, &of_arrays, precision, &wrong)
+        let of_arrays = OfArrays { numbers: &numbers, orders: &orders, alone: &axes };
+        let explanation = explain(exact, mesh, (rays, sides), stated, &of_arrays, precision, &wrong)?;
+        let sentence = explanation.sentence();
+        let beside = case.as_ref().zip(stated.1).map_or_else(String::new, |(case, of_cloud)| {
+            let is_laid = explanation.mistakes.iter().any(|words| {
+                of_cloud.laid.contains(words) || words.contains("channels") || words.contains("returns")
+            });
+            case.facts.beside(&sentence, is_laid)
+        });
+        Some(sentence + &beside)
     });
     let answers = cast_with(exact, rays, sides, Questions::default(), progress);
     let cloud = case.map(|case| case.facts);
@@ -311,7 +321,7 @@ fn judge(
     let why = match why {
         // Whatever makes every ray a miss would explain it.
         None if is_silent && !wrong.is_empty() => Some("every ray is a miss: nothing at all is hit".into()),
-        Some(explanation) => explanation.map(|explanation| explanation.sentence()),
+        Some(sentence) => sentence,
         None => of_fields.map(|words| format!("100.0000 % agree if {words}")),
     };
     Judged { comparison, why, answers, cloud }

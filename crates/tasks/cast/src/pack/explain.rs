@@ -39,7 +39,7 @@ pub(super) fn explain(
     mesh: &Triangles,
     (rays, sides): (&[CastRay], Sides),
     (stated, of_cloud): (&Stated, Option<&OfCloud<'_>>),
-    OfArrays { numbers, alone }: &OfArrays<'_>,
+    OfArrays { numbers, orders, alone }: &OfArrays<'_>,
     precision: Precision,
     wrong: &[usize],
 ) -> Option<Explanation> {
@@ -100,22 +100,32 @@ pub(super) fn explain(
     let estimated = estimated_of(&trial);
     let precision = Named::of(&PRECISION, Group::Others);
     let left_without = |mistake: &Named<'_>| trial.without(mistake.undo)?.wrong(exact, mesh, most);
-    // Single precision excuses much: it comes last.
     let common = mistakes.iter().copied();
-    let singles = common.chain(estimated.iter().chain(*alone).map(Named::extra)).chain([precision]);
-    let single = singles.filter_map(|mistake| Some((left_without(&mistake)?, mistake)));
+    let all: Vec<Named<'_>> =
+        common.chain(estimated.iter().chain(*orders).chain(*alone).map(Named::extra)).collect();
+    let single = all.iter().filter_map(|mistake| Some((left_without(mistake)?, *mistake)));
     let mut singles: Vec<(usize, Named<'_>)> = single.collect();
     // All rays are asked of the best one first: mostly it holds, and no other is asked.
     singles.sort_by_key(|(left, _)| *left);
     if let Some((left, mistake)) = singles.into_iter().find(|(_, mistake)| explains_all(&[mistake])) {
         return Some(explanation(vec![mistake.words.to_string()], left));
     }
+    // Single precision excuses much: it comes after all others.
+    let left_single = left_without(&precision);
+    if let Some(left) = left_single
+        && trial.looks_single(exact, before)
+        && explains_all(&[&precision])
+    {
+        return Some(explanation(vec![precision.words.to_string()], left));
+    }
     // Both of a pair change something: else the pair is a single mistake.
     let mut best: Option<(Vec<String>, usize)> = None;
-    for (k, first) in mistakes.iter().enumerate().filter(|(_, first)| first.is_common) {
+    let firsts = mistakes.iter().enumerate().filter(|(_, first)| first.is_common);
+    let firsts = firsts.map(|(k, first)| (k + 1, *first));
+    for (beyond, first) in firsts.chain(orders.iter().map(|order| (0, Named::extra(order)))) {
         let Some(once) = trial.without(first.undo) else { continue };
         let estimated = estimated_of(&once);
-        let others = mistakes.iter().skip(k + 1).filter(|second| second.is_common);
+        let others = mistakes.iter().skip(beyond).filter(|second| second.is_common);
         let others = others.copied().chain(estimated.iter().map(Named::extra));
         for second in others.filter(|second| first.pairs_with(second)) {
             let most = match best {
@@ -124,13 +134,23 @@ pub(super) fn explain(
                 None => most,
             };
             if let Some(left) = once.without(second.undo).and_then(|twice| twice.wrong(exact, mesh, most))
-                && explains_all(&[first, &second])
+                && explains_all(&[&first, &second])
             {
                 best = Some((vec![first.words.to_string(), second.words.to_string()], left));
             }
         }
     }
-    best.map(|(mistakes, left)| explanation(mistakes, left))
+    if let Some((mistakes, left)) = best {
+        return Some(explanation(mistakes, left));
+    }
+    // What single precision excuses alone, without looking like it, is none of two.
+    let mut firsts = all.iter().filter(|_| left_single.is_none());
+    firsts.find_map(|first| {
+        let once = trial.without(first.undo)?;
+        let left = once.without(precision.undo)?.wrong(exact, mesh, most)?;
+        let is_told = once.looks_single(exact, before) && explains_all(&[first, &precision]);
+        is_told.then(|| explanation(vec![first.words.to_string(), precision.words.to_string()], left))
+    })
 }
 
 /// Half of [`MAX_TRIED`] of so many, or all: one of each of as many equal parts. Which one is drawn, for parts of the length of a

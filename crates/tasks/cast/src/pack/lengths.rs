@@ -4,7 +4,7 @@ use glam::DVec3;
 use raypencil_referee::ExactCast;
 use raypencil_scene::{CastRay, Sides};
 
-use super::clouds::fit::{median, rounded};
+use super::clouds::fit::{median, rounded_to_all};
 use super::mistakes::{Extra, Group};
 use super::trial::Trial;
 
@@ -17,26 +17,40 @@ const MAX_FITTED: usize = 200;
 /// A length of a ray without the mistake: of the ray's own length by the stated one.
 type Undone = fn(length: f64, by: f64) -> f64;
 
-/// The factor and the length by which most rays are off, with few decimals and with more.
+/// What most rays are off by, with few decimals and with more. `right` is what no ray is off by.
+fn found(pairs: &[[f64; 2]], of: fn(&[f64; 2]) -> f64, right: f64) -> Vec<f64> {
+    let Some(middle) = median(pairs.iter().map(of).collect()) else { return Vec::new() };
+    // Few rays are off alike where no number explains them.
+    let is_alike = |pair: &&[f64; 2]| (of(pair) - middle).abs() <= 0.5 * (middle - right).abs();
+    match 2 * pairs.iter().filter(is_alike).count() >= pairs.len() && middle != right {
+        true => rounded_to_all(middle),
+        false => Vec::new(),
+    }
+}
+
+/// The factor and the length by which most rays are off.
 pub(super) fn lengths(trial: &Trial, exact: &ExactCast<'_>, sides: Sides) -> Vec<Extra<'static>> {
-    let pair = |k: usize| -> Option<[f64; 2]> {
-        let ray = &trial.rays[k];
-        let stated = match (&trial.stated.t, &trial.stated.range) {
-            (Some(t), _) => t[k] * ray.direction.length(),
-            (None, Some(range)) => range[k],
-            (None, None) => return None,
-        };
-        let face = *exact.reading(ray, sides).hit()?.first()?;
-        let length = exact.values(ray, face)?.range.double;
-        (stated.is_finite() && length > 0.0).then_some([stated, length])
-    };
     let every = trial.rays.len().div_ceil(MAX_FITTED).max(1);
-    let pairs: Vec<[f64; 2]> = (0..trial.rays.len()).step_by(every).filter_map(pair).collect();
+    // A ray, with its exact t and range.
+    let known = |k: usize| -> Option<(usize, [f64; 2])> {
+        let face = *exact.reading(&trial.rays[k], sides).hit()?.first()?;
+        let hit = exact.values(&trial.rays[k], face)?;
+        (hit.range.double > 0.0).then_some((k, [hit.t.double, hit.range.double]))
+    };
+    let known: Vec<(usize, [f64; 2])> = (0..trial.rays.len()).step_by(every).filter_map(known).collect();
+    let pairs_of = |stated: &dyn Fn(usize) -> f64, which: usize| -> Vec<[f64; 2]> {
+        let pairs = known.iter().map(|(k, exact)| [stated(*k), exact[which]]);
+        pairs.filter(|[stated, _]| stated.is_finite()).collect()
+    };
+    let (t, range) = (&trial.stated.t, &trial.stated.range);
+    let pairs = match (t, range) {
+        (Some(t), _) => pairs_of(&|k| t[k] * trial.rays[k].direction.length(), 1),
+        (None, Some(range)) => pairs_of(&|k| range[k], 1),
+        (None, None) => return Vec::new(),
+    };
     if pairs.len() < MIN_FITTED {
         return Vec::new();
     }
-    let found =
-        |of: fn(&[f64; 2]) -> f64| median(pairs.iter().map(of).collect()).map_or_else(Vec::new, rounded);
     let mut list = Vec::new();
     // Points may follow the lengths, or be right.
     let mut add = |words: String, by: f64, undone: Undone, group: Group| {
@@ -45,14 +59,75 @@ pub(super) fn lengths(trial: &Trial, exact: &ExactCast<'_>, sides: Sides) -> Vec
             list.push(Extra { words: words.clone(), undo: Box::new(undo), is_common: false, group });
         }
     };
-    for by in found(|[stated, exact]| stated - exact) {
+    for by in found(&pairs, |[stated, exact]| stated - exact, 0.0) {
         let way = if by > 0.0 { "long" } else { "short" };
         add(format!("lengths are {} too {way}", by.abs()), by, |length, by| length - by, Group::Others);
     }
-    for by in found(|[stated, exact]| stated / exact).into_iter().filter(|by| *by > 0.0 && *by != 1.0) {
+    for by in factors(&pairs) {
         add(format!("lengths are {by} times what they are"), by, |length, by| length / by, Group::Factors);
     }
+    // One of two arrays, or t of directions that are not equally long.
+    if let Some(t) = t {
+        let pairs = pairs_of(&|k| t[k], 0);
+        for by in found(&pairs, |[stated, exact]| stated - exact, 0.0) {
+            let way = if by > 0.0 { "large" } else { "small" };
+            list.push(of_t(format!("t is {} too {way}", by.abs()), Group::Others, move |t, _| *t -= by));
+        }
+        for by in factors(&pairs).into_iter().filter(|_| range.is_some()) {
+            list.push(of_t(format!("t is {by} times what it is"), Group::Factors, move |t, error| {
+                (*t, *error) = (*t / by, *error / by);
+            }));
+        }
+    }
+    if let (Some(_), Some(range)) = (t, range) {
+        let pairs = pairs_of(&|k| range[k], 1);
+        for by in found(&pairs, |[stated, exact]| stated - exact, 0.0) {
+            let way = if by > 0.0 { "long" } else { "short" };
+            let words = format!("the range is {} too {way}", by.abs());
+            list.push(of_range(words, Group::Others, move |range, _| *range -= by));
+        }
+        for by in factors(&pairs) {
+            list.push(of_range(
+                format!("the range is {by} times what it is"),
+                Group::Factors,
+                move |range, error| {
+                    (*range, *error) = (*range / by, *error / by);
+                },
+            ));
+        }
+    }
     list
+}
+
+/// Factors by which most rays are off.
+fn factors(pairs: &[[f64; 2]]) -> Vec<f64> {
+    let all = found(pairs, |[stated, exact]| stated / exact, 1.0).into_iter();
+    all.filter(|by| *by > 0.0 && *by != 1.0).collect()
+}
+
+/// A mistake of t alone: `undo` changes a finite one, and how far storing may have moved it.
+fn of_t(words: String, group: Group, undo: impl Fn(&mut f64, &mut f64) + 'static) -> Extra<'static> {
+    let undo = move |trial: &mut Trial| {
+        let stated = &mut trial.stated;
+        each(&mut stated.t, &mut stated.stored.t, &undo);
+    };
+    Extra { words, undo: Box::new(undo), is_common: false, group }
+}
+
+/// The same of the range alone.
+fn of_range(words: String, group: Group, undo: impl Fn(&mut f64, &mut f64) + 'static) -> Extra<'static> {
+    let undo = move |trial: &mut Trial| {
+        let stated = &mut trial.stated;
+        each(&mut stated.range, &mut stated.stored.range, &undo);
+    };
+    Extra { words, undo: Box::new(undo), is_common: false, group }
+}
+
+fn each(numbers: &mut Option<Vec<f64>>, errors: &mut Option<Vec<f64>>, undo: &dyn Fn(&mut f64, &mut f64)) {
+    for (k, number) in numbers.iter_mut().flatten().enumerate().filter(|(_, number)| number.is_finite()) {
+        let mut none = 0.0;
+        undo(number, errors.as_mut().map_or(&mut none, |errors| &mut errors[k]));
+    }
 }
 
 fn undo(trial: &mut Trial, by: f64, undone: Undone, with_points: bool) {

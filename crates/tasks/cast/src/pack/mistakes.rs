@@ -31,7 +31,9 @@ pub(super) enum Group {
 pub(super) struct OfArrays<'a> {
     /// Mistakes with a number, which is found from a trial.
     pub(super) numbers: &'a dyn Fn(&Trial) -> Vec<Extra<'static>>,
-    /// Mistakes that are no half of two.
+    /// Orders of the answers: the first of two mistakes, for others change the answers of a ray.
+    pub(super) orders: &'a [Extra<'a>],
+    /// Mistakes that are no half of two, unless the other one is single precision.
     pub(super) alone: &'a [Extra<'a>],
 }
 
@@ -41,6 +43,8 @@ pub(super) struct OfCloud<'a> {
     pub(super) part: &'a CloudPart,
     /// Mistakes without numbers.
     pub(super) extras: Vec<Extra<'a>>,
+    /// Those of them, in words, that lay points on other rays.
+    pub(super) laid: Vec<String>,
     /// Mistakes with a number, which is estimated from a trial.
     #[allow(clippy::type_complexity, reason = "one function, which borrows the same cloud")]
     pub(super) estimated: Box<dyn Fn(&Trial) -> Vec<Extra<'a>> + 'a>,
@@ -352,7 +356,7 @@ pub(super) const ABOUT_SENSORS: &[Mistake] = &[
     },
 ];
 
-/// Single precision excuses much: it is not half of an explanation.
+/// Single precision excuses much: it is told of values that look like it, and where nothing else explains them.
 pub(super) const PRECISION: Mistake = Mistake {
     words: "arithmetic is of single precision: declare --arithmetic f32",
     undo: |trial| trial.precision = Precision::F32,

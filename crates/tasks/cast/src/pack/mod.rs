@@ -7,6 +7,9 @@
 //! candidate   another program's arrays
 //! clouds/     another program's point cloud
 //! lengths     a factor or a length by which arrays are off
+//! decimals    arrays that are rounded to decimals
+//! steps       the step of which numbers are multiples
+//! single      whether wrong values look like those of single precision
 //! trial       a question and its stated answers, as mistakes change them
 //! arrays      orders, axes and constants for no hit that an array may have
 //! mistakes    what a candidate may do otherwise, in words, and what undoes it
@@ -19,12 +22,15 @@ mod arrays;
 mod candidate;
 mod check;
 mod clouds;
+mod decimals;
 mod explain;
 mod lengths;
 mod mistakes;
 mod read;
 mod report;
 mod scan;
+mod single;
+mod steps;
 mod trial;
 mod write;
 

@@ -311,6 +311,32 @@ fn wrong_numbers_of_returns_are_wrong() {
     assert_eq!(checked.cloud.expect("a cloud").wrong_numbers.len(), 1);
 }
 
+/// Points a hundredth too far, and numbers that are wrong beside them.
+#[test]
+fn wrong_numbers_of_returns_are_told_beside_wrong_points() {
+    let why = |number: &dyn Fn(usize, u32) -> u32| {
+        let trial = Trial::of_room(&still(), Keep::UpTo(2));
+        let right: Vec<Point> = trial.right().into_iter().filter(|one| one.place.is_finite()).collect();
+        let points = right.iter().enumerate();
+        let of = |(k, one): (usize, &Point)| Point {
+            place: one.place * 1000.0,
+            number: number(k, one.number),
+            ..*one
+        };
+        let points: Vec<Point> = points.map(of).collect();
+        let checked = trial.check(&trial.write(&points, Fields::Numbers), Precision::F64).expect("a check");
+        assert!(!checked.passes());
+        checked.why.expect("a reason")
+    };
+    let lengths = "100.0000 % agree if lengths are in thousandths of the mesh's unit";
+    assert_eq!(why(&|_, number| number), lengths);
+    let numbers =
+        "all points have the number of return 7: it counts the returns of a footprint, the nearest is 1";
+    assert_eq!(why(&|_, _| 7), format!("{lengths}, and {numbers}"));
+    let one = why(&|k, number| if k == 9 { 3 } else { number });
+    assert_eq!(one, format!("{lengths}; something else is wrong, too"));
+}
+
 #[test]
 fn more_points_than_returns_are_told_as_such() {
     let trial = Trial::of_room(&still(), Keep::First);

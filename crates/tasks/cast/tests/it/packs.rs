@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use raypencil_cast::{
-    CandidateConventions, CastSource, Questions, RayArray, RayPackChecked, cast, check_ray_pack,
-    comparison_text, rays_from_bytes, write_answers, write_ray_pack,
+    CandidateConventions, CastSource, Questions, RayArray, RayPackChecked, cast, check_ray_pack, compare,
+    comparison_text, rays_from_bytes, read_stated, write_answers, write_ray_pack,
 };
 use raypencil_files::{read_npy_numbers, write_npy_numbers};
 use raypencil_scene::{CastRay, Precision, Sides, Silent, Triangles};
@@ -462,18 +462,21 @@ fn a_declared_number_is_no_face_of_rays_that_hit_and_is_rounded_as_it_is_stored(
 #[test]
 fn answers_that_disagree_with_themselves_are_wrong_whatever_is_right() {
     let right = Folders::right;
-    let rays = right().of("t");
-    let misses: Vec<usize> = (0..rays.len()).filter(|&ray| rays[ray].is_infinite()).collect();
-    let hits: Vec<usize> = (0..rays.len()).filter(|&ray| rays[ray].is_finite()).collect();
+    let t = right().of("t");
+    let misses: Vec<usize> = (0..t.len()).filter(|&ray| t[ray].is_infinite()).collect();
+    let hits: Vec<usize> = (0..t.len()).filter(|&ray| t[ray].is_finite()).collect();
     let (miss, hit) = (misses[2], hits[5]);
     let at = |name: &str, ray: usize, parts: usize, number: f64| {
         right().change(name, move |index, value| if index / parts == ray { number } else { value })
     };
+    let (mesh, asked) = (cube(), rays());
     let wrong = |folders: &Folders, ray: usize, words: &str| {
-        let checked = folders.check();
-        let found: Vec<_> = checked.comparison.wrong().collect();
-        assert!(!checked.passes() && found.len() == 1 && found[0].0 == ray, "{words}: {found:?}");
-        let text = comparison_text("mine", &checked.comparison, |_| String::new());
+        let path = folders.candidate.path();
+        let stated = read_stated(path, &asked.shape, CandidateConventions::default()).unwrap();
+        let compared = compare(&mesh, &asked.rays, Sides::Both, &stated, Precision::F64, &Silent);
+        let found: Vec<_> = compared.wrong().collect();
+        assert!(!compared.passes() && found.len() == 1 && found[0].0 == ray, "{words}: {found:?}");
+        let text = comparison_text("mine", &compared, |_| String::new());
         assert!(text.contains(words), "{words}: {text}");
     };
     // A value where the face, or else the first distance, says that nothing is hit.
@@ -552,6 +555,80 @@ fn a_program_that_hits_nothing_is_told_so() {
     let checked =
         check_ray_pack(pack.path(), candidate.path(), Precision::F64, conventions, &Silent).unwrap();
     assert_eq!((checked.comparison.counts().wrong, checked.why.as_deref()), (1, Some(nothing)));
+}
+
+/// Single precision has bounds that also excuse what is no rounding.
+#[test]
+fn small_errors_are_told_as_what_they_are() {
+    let right = || Folders::right().without(&["side", "point", "normal", "barycentric", "cos_incidence"]);
+    let rays = rays().rays;
+    let size = |index: usize| rays[index].direction.length();
+    let lengths = |factor: f64, offset: f64| {
+        right()
+            .change("t", |index, t| factor * t + offset / size(index))
+            .change("range", |_, range| factor * range + offset)
+    };
+    lengths(1.0, 1e-8).expect_why(&["100.0000 %", "if lengths are 0.00000001 too long"]);
+    lengths(1.0, -3e-9).expect_why(&["100.0000 %", "if lengths are 0.000000003 too short"]);
+    lengths(1.000_000_02, 0.0).expect_why(&["100.0000 %", "if lengths are 1.00000002 times what they are"]);
+    lengths(1.047_197_551_2, 0.0)
+        .expect_why(&["100.0000 %", "if lengths are 1.0471975512 times what they are"]);
+    let third = core::f64::consts::PI / 3.0;
+    lengths(third, 0.0).expect_why(&["100.0000 %", "if lengths are 1.04719755119"]);
+    // One of both.
+    right().change("t", |_, t| t + 0.125).expect_why(&["100.0000 %", "if t is 0.125 too large"]);
+    right().without(&["range"]).change("t", |_, t| t + 1e-8).expect_why(&["if t is 0.00000001 too large"]);
+    right().change("t", |_, t| t * 1.25).expect_why(&["100.0000 %", "if t is 1.25 times what it is"]);
+    right().change("range", |_, range| range - 0.5).expect_why(&["if the range is 0.5 too short"]);
+    right().change("range", |_, range| range * 0.75).expect_why(&["if the range is 0.75 times what it is"]);
+    // Decimals.
+    for decimals in [4, 6, 7, 8] {
+        let ten = libm::pow(10.0, f64::from(decimals));
+        let rounded = move |_: usize, number: f64| {
+            if number.is_finite() { (number * ten).round() / ten } else { number }
+        };
+        let both = right().change("t", rounded).change("range", rounded);
+        both.expect_why(&["100.0000 %", &format!("if all values are rounded to {decimals} decimals")]);
+        let one = right().change("t", rounded);
+        one.expect_why(&["100.0000 %", &format!("if t is rounded to {decimals} decimals")]);
+        let normals = Folders::right().change("barycentric", rounded);
+        normals.expect_why(&[&format!("if barycentric weights are rounded to {decimals} decimals")]);
+    }
+    // Too long by no number, and always too long: no rounding does that.
+    let grown = right().without(&["range"]).change("t", |k, t| t + 1e-8 * (1 + k % 7) as f64);
+    assert!(grown.check_by(Precision::F32, CandidateConventions::default()).passes());
+    assert_eq!(grown.check().why, None);
+    // Errors of the size of rounding, to both sides.
+    let noise = |k: usize| ((k * 7_919) % 1_000) as f64 / 500.0 - 1.0;
+    let computed = right().without(&["range"]).change("t", |k, t| t * (1.0 + 1e-7 * noise(k)));
+    computed.expect_why(&["if arithmetic is of single precision"]);
+    let finer = right().without(&["range"]).change("t", |k, t| t * (1.0 + 1e-10 * noise(k)));
+    assert_eq!(finer.check().why, None);
+}
+
+#[test]
+fn single_precision_and_orders_are_told_with_another_mistake() {
+    let values = ["face", "t", "range", "point", "normal", "barycentric", "cos_incidence"];
+    let rounded = || values.iter().fold(Folders::right(), |folders, name| folders.change(name, single));
+    let f32 = "arithmetic is of single precision: declare --arithmetic f32";
+    rounded().change("normal", |_, part| -part).expect_why(&["normals point inward, ", f32]);
+    let mm = |_: usize, length: f64| length * 1e3;
+    let three = ["t", "range", "point"].iter().fold(rounded(), |folders, name| folders.change(name, mm));
+    three.expect_why(&["lengths are in thousandths of the mesh's unit, ", f32]);
+    // Rows from the last to the first.
+    let reversed = |folders: Folders| {
+        let arrays = values.iter().chain(&["side"]);
+        arrays.fold(folders, |folders, name| {
+            let path = folders.candidate.path().join(format!("{name}.npy"));
+            let array = read_npy_numbers(path, &Default::default()).unwrap().values;
+            let row = array.len() / 10;
+            folders.change(name, |index, _| array[(9 - index / row) * row + index % row])
+        })
+    };
+    let rows = "rows of answers run from the last to the first, ";
+    reversed(rounded()).expect_why(&[rows, f32]);
+    reversed(Folders::right().change("normal", |_, part| -part)).expect_why(&[rows, "normals point inward"]);
+    reversed(Folders::right().change("t", |_, t| t + 0.125)).expect_why(&[rows, "t is 0.125 too large"]);
 }
 
 #[test]

@@ -1,7 +1,10 @@
 //! Numbers of a mistake, from the points of a trial: the median, and a search on one number.
 
 /// Decimals that are tried for a number, from the fewest.
-const DECIMALS: [i32; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
+const DECIMALS: std::ops::RangeInclusive<usize> = 0..=7;
+
+/// The same for a number that is known as well as lengths are.
+const ALL_DECIMALS: std::ops::RangeInclusive<usize> = 0..=16;
 
 /// Steps of the search. Newton's method doubles its digits each time.
 const STEPS: usize = 12;
@@ -17,9 +20,18 @@ pub(in crate::pack) fn median(mut numbers: Vec<f64>) -> Option<f64> {
 
 /// A number with few decimals, then with more, each once; 0 is left out.
 pub(in crate::pack) fn rounded(number: f64) -> Vec<f64> {
+    rounded_to(number, DECIMALS)
+}
+
+/// The same up to the last digit of a number of double precision that is about 1.
+pub(in crate::pack) fn rounded_to_all(number: f64) -> Vec<f64> {
+    rounded_to(number, ALL_DECIMALS)
+}
+
+fn rounded_to(number: f64, decimals: std::ops::RangeInclusive<usize>) -> Vec<f64> {
     let mut found: Vec<f64> = Vec::new();
-    for decimals in DECIMALS {
-        let text = format!("{number:.*}", decimals as usize);
+    for decimals in decimals {
+        let text = format!("{number:.decimals$}");
         let Some(rounded) = text.parse::<f64>().ok().filter(|rounded| *rounded != 0.0) else { continue };
         if found.last() != Some(&rounded) {
             found.push(rounded);

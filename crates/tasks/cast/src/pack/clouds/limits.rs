@@ -7,10 +7,8 @@ use raypencil_scene::{CastRay, Reading, Sides};
 
 use super::fit::{median, rounded};
 use super::list::{List, along_of};
+use crate::pack::steps::{self, MIN_FITTED, is_multiple};
 use crate::pack::trial::{CloudPart, Trial};
-
-/// Points from which a number is found, at least: of fewer, a number fits whatever is wrong.
-const MIN_FITTED: usize = 12;
 
 /// Rays without a point that are looked at, at most.
 const MAX_MISSING: usize = 400;
@@ -20,11 +18,8 @@ const ROUNDINGS: f64 = 16.0;
 
 /// Steps of numbers: parts of a power of ten, and negative powers of two.
 const STEPS_OF_TEN: [f64; 8] = [1.0, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
-const POWERS_OF_TEN: std::ops::RangeInclusive<i32> = -5..=0;
+const POWERS_OF_TEN: std::ops::RangeInclusive<i32> = -8..=0;
 const POWERS_OF_TWO: std::ops::RangeInclusive<i32> = 1..=14;
-
-/// Greatest chance that other numbers are multiples of a step too. Tuned: about a hundred steps are tried.
-const MAX_CHANCE: f64 = 1e-9;
 
 /// Length of a point along its ray, and how far storing and rounding may have moved it; `None` without a point.
 fn length(trial: &Trial, cloud: &CloudPart, k: usize) -> Option<[f64; 2]> {
@@ -165,26 +160,7 @@ fn step(numbers: &[[f64; 2]]) -> Option<f64> {
         STEPS_OF_TEN.iter().map(move |part| format!("{part}e{power}").parse::<f64>().unwrap_or(f64::NAN))
     });
     let of_two = POWERS_OF_TWO.map(|power| libm::ldexp(1.0, -power));
-    let mut steps: Vec<f64> = of_ten.chain(of_two).collect();
-    steps.sort_by(|a, b| b.total_cmp(a));
-    steps.into_iter().find(|&step| {
-        // The chance that a number lies as near to a multiple, where that says something.
-        let chance = |error: f64| (2.0 * error / step).min(1.0);
-        let of = numbers.iter().filter(|[_, error]| chance(*error) < 0.25);
-        let (mut all, mut multiples, mut log) = (0_usize, 0_usize, 0.0);
-        for &[number, error] in of {
-            all += 1;
-            if is_multiple(number, error, step) {
-                multiples += 1;
-                log += libm::log(chance(error).max(1e-3));
-            }
-        }
-        all >= MIN_FITTED && (all - multiples) * 100 <= all && log <= libm::log(MAX_CHANCE)
-    })
-}
-
-fn is_multiple(number: f64, error: f64, step: f64) -> bool {
-    (number - step * (number / step).round()).abs() <= error
+    steps::step(numbers, &of_ten.chain(of_two).collect::<Vec<f64>>())
 }
 
 /// Numbers that are multiples of a step: lengths, the field `range`, and coordinates. `pairs` are indices with exact ranges.

@@ -5,7 +5,7 @@ use raypencil_referee::ExactCast;
 use raypencil_scene::pattern::Mounting;
 use raypencil_scene::{CastRay, Pose, Sides};
 
-use super::fit::{least, median, rounded};
+use super::fit::{least, median, rounded, rounded_to_all};
 use super::limits::{of_ranges, of_steps};
 use super::list::{List, along, laid, parts, scaled, set_poses};
 use super::places::{of_exchanged_channels, of_order, of_returns};
@@ -31,6 +31,9 @@ const LENGTHS: [(&str, f64); 4] = [
     ("lengths are in feet", 0.3048),
 ];
 
+/// Points in another order.
+const DIRECTED: &str = "points are not in the order of the rays: their directions tell which is whose";
+
 /// A cosine between a ray, by its index, and what a length is measured along.
 type Cosine<'a> = Box<dyn Fn(usize, &CastRay) -> f64 + 'a>;
 
@@ -47,9 +50,15 @@ pub(in crate::pack) fn of_cloud<'a>(
     if let Some(beams) = case.beams {
         of_returns(&mut list, case, beams);
     }
+    let words_of = |list: &List<'_>, from: usize| -> Vec<String> {
+        list.extras[from..].iter().map(|extra| extra.words.clone()).collect()
+    };
+    let mut words_laid = words_of(&list, 0);
     if let Some(scan) = case.scan {
         of_frames(&mut list, case, scan);
+        let from = list.extras.len();
         of_order(&mut list, case, scan);
+        words_laid.extend(words_of(&list, from));
         of_head(&mut list, case, scan);
         of_motion(&mut list, case, scan);
         of_depth(&mut list, case, scan);
@@ -67,18 +76,25 @@ pub(in crate::pack) fn of_cloud<'a>(
     for (words, part) in &case.backwards {
         list.add(words.as_str(), true, move |trial| laid(trial, part));
     }
+    words_laid.extend(case.backwards.iter().map(|(words, _)| words.clone()));
+    words_laid.push(DIRECTED.into());
     let estimated = move |trial: &Trial| {
         let mut list = List { extras: Vec::new() };
         estimate(&mut list, trial, case, exact, sides);
         if let Some(part) = &case.directed {
-            let words = "points are not in the order of the rays: their directions tell which is whose";
-            list.add(words, true, move |trial| laid(trial, part));
+            list.add(DIRECTED, true, move |trial| laid(trial, part));
         }
         list.extras
     };
     // A ray without a length meets what is there if its end is ignored: that explains no return that is none.
     let has_ends = case.beams.is_none();
-    OfCloud { part: &case.part, extras: list.extras, estimated: Box::new(estimated), has_ends }
+    OfCloud {
+        part: &case.part,
+        extras: list.extras,
+        laid: words_laid,
+        estimated: Box::new(estimated),
+        has_ends,
+    }
 }
 
 /// Frames of the points.
@@ -367,14 +383,14 @@ fn estimate<'a>(
         some.iter().filter_map(|&k| Some((k, range_of(&trial.rays[k])?))).collect();
     let stated_of = |k: usize| (cloud.point(k).0 - trial.rays[k].origin).length();
     let pairs: Vec<(f64, f64)> = exact_of.iter().map(|&(k, exact)| (stated_of(k), exact)).collect();
-    for by in
-        median(pairs.iter().map(|(stated, exact)| stated - exact).collect()).map_or_else(Vec::new, rounded)
+    for by in median(pairs.iter().map(|(stated, exact)| stated - exact).collect())
+        .map_or_else(Vec::new, rounded_to_all)
     {
         let words = format!("ranges are {} too {}", by.abs(), if by > 0.0 { "long" } else { "short" });
         list.add(words, false, move |trial| along(trial, |_, _, length| length - by));
     }
-    for by in
-        median(pairs.iter().map(|(stated, exact)| stated / exact).collect()).map_or_else(Vec::new, rounded)
+    for by in median(pairs.iter().map(|(stated, exact)| stated / exact).collect())
+        .map_or_else(Vec::new, rounded_to_all)
     {
         if by != 1.0 && by > 0.0 {
             list.add_factor(format!("ranges are {by} times what they are"), false, move |trial| {

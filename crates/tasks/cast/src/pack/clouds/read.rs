@@ -60,6 +60,19 @@ impl CloudFacts {
         let words: Vec<String> = [keys, numbers].into_iter().flatten().collect();
         (!words.is_empty()).then(|| words.join(", and "))
     }
+
+    /// What is wrong beside the points themselves, in words that follow a reason: what explains it, or that something else is wrong. `is_laid`: the reason lays points on other
+    /// rays, which may be all that is wrong.
+    pub(in crate::pack) fn beside(&self, reason: &str, is_laid: bool) -> String {
+        let of_fields = [(&self.wrong_keys, &self.keys_why), (&self.wrong_numbers, &self.numbers_why)];
+        let known = of_fields.iter().filter_map(|(_, why)| why.as_ref()).filter(|why| !reason.contains(*why));
+        let words: String = known.map(|why| format!(", and {why}")).collect();
+        let is_unknown = of_fields.iter().any(|(wrong, why)| !wrong.is_empty() && why.is_none());
+        match !is_laid && (is_unknown || !self.strays.is_empty()) {
+            true => format!("{words}; something else is wrong, too"),
+            false => words,
+        }
+    }
 }
 
 /// A cloud on the rays of a pack.

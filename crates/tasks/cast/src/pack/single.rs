@@ -1,0 +1,66 @@
+//! Whether wrong values look like those of single precision. Its bounds are wide: they also excuse a constant length or rounded decimals
+//! of a hundred millionth.
+
+use raypencil_referee::ExactCast;
+
+use super::trial::Trial;
+use crate::comparison::CastValue;
+
+/// Wrong rays that are looked at, at most.
+const MAX_LOOKED: usize = 400;
+
+/// Numbers of which signs and sizes say something, at least.
+const MIN_NUMBERS: usize = 12;
+
+/// A value that is nearer to the exact one, as a part of it, is not wrong: a few roundings of double precision.
+const RIGHT: f64 = 16.0 * f64::EPSILON;
+
+/// Least error in the middle, as a part of the number. Rounding to single precision alone leaves 2^-26 or more.
+const LEAST_ERROR: f64 = 1.0 / (1_u64 << 28) as f64;
+
+/// A wrong number.
+struct Off {
+    stated: f64,
+    exact: f64,
+    /// Whether its type holds single precision or less, whatever was computed.
+    is_stored_so: bool,
+}
+
+impl Trial {
+    /// Whether most wrong numbers of the first rays, so many, are of single precision, or are off by as much as its rounding and to
+    /// both sides. Of too few numbers that is not asked.
+    pub(super) fn looks_single(&self, exact: &ExactCast<'_>, wrong: usize) -> bool {
+        let numbers: Vec<Off> =
+            (0..wrong.min(self.rays.len()).min(MAX_LOOKED)).flat_map(|ray| self.off(exact, ray)).collect();
+        if numbers.len() < MIN_NUMBERS {
+            return true;
+        }
+        let most = |count: usize| count * 10 >= numbers.len() * 9;
+        let is_single = |off: &&Off| !off.is_stored_so && off.stated == f64::from(off.stated as f32);
+        if most(numbers.iter().filter(is_single).count()) {
+            return true;
+        }
+        let above = numbers.iter().filter(|off| off.stated > off.exact).count();
+        let mut sizes: Vec<f64> =
+            numbers.iter().map(|off| ((off.stated - off.exact) / off.exact).abs()).collect();
+        sizes.sort_by(f64::total_cmp);
+        !most(above) && !most(numbers.len() - above) && sizes[sizes.len() / 2] >= LEAST_ERROR
+    }
+
+    /// The numbers of a ray that are off.
+    fn off(&self, exact: &ExactCast<'_>, index: usize) -> Vec<Off> {
+        let ray = &self.rays[index];
+        let stated = self.stated.face.as_ref().and_then(|faces| faces[index]);
+        let face = stated.or_else(|| exact.reading(ray, self.sides).hit().map(|faces| faces[0]));
+        let hit = face.filter(|_| self.stated.speaks(index).1).and_then(|face| exact.values(ray, face));
+        let Some(hit) = hit else { return Vec::new() };
+        let of_value = |value: CastValue| {
+            let stated = self.stated.part(value, index).filter(|_| value != CastValue::Side)?;
+            let is_stored_so = self.stated.stored.of(value, index) > 0.0;
+            let pairs = stated.into_iter().zip(value.exact(&hit));
+            Some(pairs.map(move |(stated, exact)| Off { stated, exact, is_stored_so }))
+        };
+        let all = CastValue::ALL.into_iter().filter_map(of_value).flatten();
+        all.filter(|off| (off.stated - off.exact).abs() > RIGHT * off.exact.abs()).collect()
+    }
+}
