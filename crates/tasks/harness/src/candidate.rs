@@ -130,7 +130,8 @@ impl Candidate {
             // It answers nothing but sets of rays.
             false => (Channels::default(), Recorded::without_maps(folder, scene, declared.precision())),
         };
-        let name = note.as_ref().map_or_else(|| recorded.name.clone(), |note| note.program.clone());
+        let name =
+            note.as_ref().and_then(|note| note.program.clone()).unwrap_or_else(|| recorded.name.clone());
         // Reports name the program, not its folder. A line break in it would look like a line of the report's own.
         let name = harmless_line(&name);
         let recorded = Recorded { name: name.clone(), ..recorded };

@@ -29,7 +29,7 @@ impl Declarations {
     /// The same with what the recording's note remembers. What is declared now counts, where both speak of the same map.
     pub fn with_note(mut self, note: Option<&Provenance>) -> Self {
         let Some(note) = note else { return self };
-        self.precision = self.precision.or(Some(precision_of(note.arithmetic)));
+        self.precision = self.precision.or(note.arithmetic.map(precision_of));
         self.miss = self.miss.or(note.miss.map(|miss| miss.0));
         self.ignores_faces |= note.no_faces;
         self.scale = self.scale.or(note.scale);

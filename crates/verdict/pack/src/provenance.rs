@@ -3,10 +3,11 @@
 
 use std::path::{Path, PathBuf};
 
-use raypencil_files::{DeclaredChannel, Fault, FileError, bytes};
+use raypencil_files::{DeclaredChannel, Fault, FileError, bytes, shortened};
 use raypencil_scene::{Precision, Scene};
 use raypencil_scene_io::scene_sha256;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use crate::manifest::ManifestScene;
 use crate::note_values::{ChannelNames, MissNumber};
@@ -29,9 +30,11 @@ const MAX_DIGEST_BYTES: usize = 64;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Provenance {
     /// Name of the program that made the recording, with its version if it gives one.
-    pub program: String,
-    /// Arithmetic that the program computes in.
-    pub arithmetic: Arithmetic,
+    #[serde(default)]
+    pub program: Option<String>,
+    /// Arithmetic that the program computes in; without it f64.
+    #[serde(default)]
+    pub arithmetic: Option<Arithmetic>,
     /// The scene that the recording belongs to, if the program knows it.
     #[serde(default)]
     pub scene: Option<ManifestScene>,
@@ -135,8 +138,8 @@ impl Provenance {
     ///     "scene": {"name": "pyramids", "sha256": "00ff"}, "seed": 5}"#;
     /// let note = Provenance::from_bytes(json, Path::new("candidate.json"))?;
     /// // f32 has a unit roundoff of 2^-24. The key `seed` is for people.
-    /// assert_eq!(note.arithmetic, Arithmetic::F32);
-    /// assert_eq!(precision_of(note.arithmetic), Precision::F32);
+    /// assert_eq!(note.arithmetic, Some(Arithmetic::F32));
+    /// assert_eq!(precision_of(Arithmetic::F32), Precision::F32);
     /// # Ok::<(), raypencil_files::FileError>(())
     /// ```
     ///
@@ -147,20 +150,18 @@ impl Provenance {
         let invalid = |error: serde_json::Error| {
             refuse(Fault::new("JSON", error.to_string(), "what docs/formats/files.md describes"))
         };
-        // The number first: a newer format is refused by it, not by a key.
-        #[derive(Deserialize)]
-        struct Head {
-            format: u64,
-        }
-        let Head { format } = serde_json::from_slice(bytes).map_err(invalid)?;
-        if format != FORMAT {
-            return Err(refuse(Fault::new("format", format.to_string(), FORMAT.to_string())));
+        // A mark of UTF-8, as editors of Windows write it.
+        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        let written: Value = serde_json::from_slice(bytes).map_err(invalid)?;
+        if let Some(fault) = other_kind(&written) {
+            return Err(refuse(fault));
         }
         let read: Self = serde_json::from_slice(bytes).map_err(invalid)?;
         let of_scene = read.scene.iter().flat_map(|scene| {
             [("scene.name", &scene.name, MAX_TEXT_BYTES), ("scene.sha256", &scene.sha256, MAX_DIGEST_BYTES)]
         });
-        for (place, text, most) in of_scene.chain([("program", &read.program, MAX_TEXT_BYTES)]) {
+        let of_program = read.program.iter().map(|program| ("program", program, MAX_TEXT_BYTES));
+        for (place, text, most) in of_scene.chain(of_program) {
             if text.len() > most {
                 return Err(refuse(Fault::new(
                     place,
@@ -195,6 +196,59 @@ impl Provenance {
         }
         Ok(read)
     }
+}
+
+/// What the value of a key has to be, in words, and whether a value is that.
+type Kind = (&'static str, &'static str, fn(&Value) -> bool);
+
+/// The keys that are read, and what they have to be. The number of the format is first: a newer one is refused by it, not by a key.
+const KINDS: [Kind; 8] = [
+    ("format", "1", |value| value.as_u64() == Some(FORMAT)),
+    ("program", "the name of the program, in quotes", Value::is_string),
+    ("arithmetic", "\"f32\" or \"f64\"", |value| matches!(value.as_str(), Some("f32" | "f64"))),
+    ("totals", "a list of totals, each with way, beam, mean and error", Value::is_array),
+    ("channels", "a map of names of maps and channels", |value| {
+        value.as_object().is_some_and(|names| names.values().all(Value::is_string))
+    }),
+    ("scale", "metres for each unit, such as 0.001", Value::is_number),
+    ("miss", "a number or \"nan\"", |value| {
+        value.is_number() || value.as_str().is_some_and(|text| text.eq_ignore_ascii_case("nan"))
+    }),
+    ("no_faces", "true or false", Value::is_boolean),
+];
+
+/// The first value of a note that is not what its key takes.
+fn other_kind(note: &Value) -> Option<Fault> {
+    let told = |value: &Value| shortened(value.to_string());
+    let Some(keys) = note.as_object() else {
+        return Some(Fault::new(
+            "JSON",
+            told(note),
+            "a note of keys, such as {\"format\": 1, \"arithmetic\": \"f32\"}",
+        ));
+    };
+    if !keys.contains_key("format") {
+        return Some(Fault::new("format", "not there", FORMAT.to_string()));
+    }
+    for (key, expected, is_so) in KINDS {
+        let value = keys.get(key).filter(|value| !value.is_null() || key == "format");
+        if let Some(value) = value.filter(|value| !is_so(value)) {
+            return Some(Fault::new(key, told(value), expected));
+        }
+    }
+    let scene = keys.get("scene").filter(|scene| !scene.is_null())?;
+    let of_scene = [
+        ("name", "the scene's name, in quotes, beside its sha256"),
+        (
+            "sha256",
+            "the SHA-256 of the resolved scene, in quotes, as in the pack's manifest.json: or leave `scene` out",
+        ),
+    ];
+    of_scene.into_iter().find_map(|(key, expected)| match scene.get(key) {
+        Some(value) if value.is_string() => None,
+        Some(value) => Some(Fault::new(format!("scene.{key}"), told(value), expected)),
+        None => Some(Fault::new(format!("scene.{key}"), "not there", expected)),
+    })
 }
 
 /// The precision of an arithmetic.
@@ -240,7 +294,7 @@ mod tests {
         let empty = tempfile::tempdir().expect("a folder");
         assert_eq!(Provenance::read(empty.path()).expect("no note is fine"), None);
         let note = read(GOOD).expect("a note").expect("one that is there");
-        assert_eq!((note.program.as_str(), note.arithmetic), ("P 1", Arithmetic::F32));
+        assert_eq!((note.program.as_deref(), note.arithmetic), (Some("P 1"), Some(Arithmetic::F32)));
         assert_eq!((note.totals[0].beam, note.totals[0].mean), (1, 2e-9));
         assert_eq!(note.scene.expect("a scene").sha256, "ab");
     }
@@ -250,9 +304,22 @@ mod tests {
         let scene = r#", "scene": {"name": "s", "sha256": "ab"}"#;
         assert!(GOOD.contains(scene));
         let note = read(&GOOD.replace(scene, "")).expect("a note").expect("one that is there");
-        assert_eq!((note.scene, note.arithmetic), (None, Arithmetic::F32));
+        assert_eq!((note.scene, note.arithmetic), (None, Some(Arithmetic::F32)));
         // Half a scene is none.
-        assert!(read(&GOOD.replace(r#", "sha256": "ab""#, "")).is_err());
+        let message = read(&GOOD.replace(r#", "sha256": "ab""#, "")).expect_err("half a scene").to_string();
+        assert!(
+            message.contains("scene.sha256: not there; expected the SHA-256 of the resolved scene"),
+            "{message}"
+        );
+    }
+
+    #[test]
+    fn a_note_may_say_one_thing_alone_and_begin_with_a_mark_of_utf_8() {
+        let note = |text: &str| read(text).expect("a note").expect("one that is there");
+        let alone = note("\u{feff}{\"format\": 1, \"arithmetic\": \"f32\"}");
+        assert_eq!((alone.program, alone.arithmetic), (None, Some(Arithmetic::F32)));
+        let alone = note(r#"{"format": 1, "program": "P", "scene": null, "miss": null}"#);
+        assert_eq!((alone.program.as_deref(), alone.arithmetic), (Some("P"), None));
     }
 
     #[test]
@@ -266,7 +333,10 @@ mod tests {
         let message = of(GOOD).expect_err("another scene").to_string();
         assert!(message.contains("of the scene ab; expected"), "{message}");
         let alone = r#"{"format": 1, "program": "ann", "arithmetic": "f32"}"#;
-        assert_eq!(of(alone).expect("no scene, no other scene").expect("a note").program, "ann");
+        assert_eq!(
+            of(alone).expect("no scene, no other scene").expect("a note").program.as_deref(),
+            Some("ann")
+        );
     }
 
     /// The note with one key more.
@@ -292,7 +362,16 @@ mod tests {
         for (text, words) in [
             ("{", vec!["candidate.json", "JSON"]),
             (r#"{"format": 2}"#, vec!["candidate.json", "format", "2", "1"]),
-            (r#"{"format": 1, "program": "P"}"#, vec!["arithmetic"]),
+            (r#"{"program": "P"}"#, vec!["format: not there; expected 1"]),
+            ("[1]", vec!["JSON: [1]; expected a note of keys"]),
+            (
+                r#"{"format": 1, "program": 7}"#,
+                vec!["program: 7; expected the name of the program, in quotes"],
+            ),
+            (r#"{"format": 1, "arithmetic": 32}"#, vec!["arithmetic: 32; expected \"f32\" or \"f64\""]),
+            (&with(r#""no_faces": "yes""#), vec!["no_faces: \"yes\"; expected true or false"]),
+            (&with(r#""miss": [0]"#), vec!["miss: [0]; expected a number or \"nan\""]),
+            (&with(r#""channels": {"depth.Z": 3}"#), vec!["channels", "a map of names of maps and channels"]),
             (&GOOD.replace("f32", "f16"), vec!["f16"]),
             (&GOOD.replace("3e-12", "-3e-12"), vec!["totals[0]", "error -0.000000000003"]),
             (
