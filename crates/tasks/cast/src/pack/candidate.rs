@@ -10,6 +10,7 @@ use raypencil_scene::{FaceId, Side};
 use crate::cloud::CloudFrame;
 use crate::comparison::{Stated, StoredErrors};
 use crate::pack::clouds::bag_within;
+use crate::pack::unread::unread;
 
 /// What a candidate declares of its point cloud.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -139,7 +140,10 @@ pub fn read_candidate(
         let expected = "face.npy, t.npy or range.npy; without one of them it is not said which rays hit";
         let found = match bag_within(folder) {
             Some(bag) => format!("none of them, but a bag: give {bag}"),
-            None => "none of them".to_string(),
+            None => match &unread(folder)[..] {
+                [] => "none of them".to_string(),
+                others => format!("none of them, but {}", others.join(", ")),
+            },
         };
         let fault = Fault::new("folder", found, expected);
         return Err(FileError::Array(fault.in_file(folder)));

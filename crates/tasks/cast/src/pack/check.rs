@@ -18,6 +18,7 @@ use super::mistakes::OfArrays;
 use super::read::RayPack;
 use super::scan::Scan;
 use super::trial::Trial;
+use super::unread::unread;
 use super::write::RayPackCounts;
 use crate::answers::{Answers, Questions, cast_with};
 use crate::comparison::{Comparison, Stated, compare_with};
@@ -51,6 +52,8 @@ pub struct RayPackChecked {
     pub fronts_only: bool,
     /// What was read of a point cloud; `None`: the candidate is a folder of arrays.
     pub cloud: Option<CloudFacts>,
+    /// Arrays of the folder that were not read, in words.
+    pub unread: Vec<String>,
 }
 
 impl RayPackChecked {
@@ -208,7 +211,8 @@ pub fn check_ray_pack(
         name: pack,
         sha256: pack_sha256,
     };
-    Ok(judged.checked(asked_by, (rays, sides), (name, stated), (Some(mesh), scan)))
+    let checked = judged.checked(asked_by, (rays, sides), (name, stated), (Some(mesh), scan));
+    Ok(RayPackChecked { unread: unread(candidate), ..checked })
 }
 
 /// Most rays of a pack whose backs, limits and lengths are counted again. Tuned: a second or two on two cores.
@@ -274,6 +278,7 @@ impl Judged {
             stated,
             fronts_only,
             cloud,
+            unread: Vec::new(),
         }
     }
 }

@@ -52,19 +52,21 @@ pub(super) fn lengths(trial: &Trial, exact: &ExactCast<'_>, sides: Sides) -> Vec
         return Vec::new();
     }
     let mut list = Vec::new();
-    // Points may follow the lengths, or be right.
-    let mut add = |words: String, by: f64, undone: Undone, group: Group| {
+    for (by, is_factor) in numbers_of(&pairs) {
+        let (words, undone, group): (String, Undone, Group) = match is_factor {
+            true => {
+                (format!("lengths are {by} times what they are"), |length, by| length / by, Group::Factors)
+            }
+            false => {
+                let way = if by > 0.0 { "long" } else { "short" };
+                (format!("lengths are {} too {way}", by.abs()), |length, by| length - by, Group::Others)
+            }
+        };
+        // Points may follow the lengths, or be right.
         for with_points in [true, false] {
             let undo = move |trial: &mut Trial| undo(trial, by, undone, with_points);
             list.push(Extra { words: words.clone(), undo: Box::new(undo), is_common: false, group });
         }
-    };
-    for by in found(&pairs, |[stated, exact]| stated - exact, 0.0) {
-        let way = if by > 0.0 { "long" } else { "short" };
-        add(format!("lengths are {} too {way}", by.abs()), by, |length, by| length - by, Group::Others);
-    }
-    for by in factors(&pairs) {
-        add(format!("lengths are {by} times what they are"), by, |length, by| length / by, Group::Factors);
     }
     // One of two arrays, or t of directions that are not equally long.
     if let Some(t) = t {
@@ -97,6 +99,16 @@ pub(super) fn lengths(trial: &Trial, exact: &ExactCast<'_>, sides: Sides) -> Vec
         }
     }
     list
+}
+
+/// Factors and lengths by which most rays are off, in pairs of the stated and the exact one, and whether each is a factor. Those of few decimals come first, and of
+/// these the factors: where all lengths are equal, either explains the other.
+pub(super) fn numbers_of(pairs: &[[f64; 2]]) -> Vec<(f64, bool)> {
+    let offsets = found(pairs, |[stated, exact]| stated - exact, 0.0).into_iter().map(|by| (by, false));
+    let mut all: Vec<(f64, bool)> = factors(pairs).into_iter().map(|by| (by, true)).chain(offsets).collect();
+    let decimals = |by: f64| by.to_string().split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    all.sort_by_key(|(by, _)| decimals(*by));
+    all
 }
 
 /// Factors by which most rays are off.

@@ -5,6 +5,7 @@
 //! read        a pack, after its digests are checked
 //! scan        times, channels and poses of a sensor's scan, beside its rays
 //! candidate   another program's arrays
+//! unread      files beside these that no name fits
 //! clouds/     another program's point cloud
 //! lengths     a factor or a length by which arrays are off
 //! decimals    arrays that are rounded to decimals
@@ -32,6 +33,7 @@ mod scan;
 mod single;
 mod steps;
 mod trial;
+mod unread;
 mod write;
 
 pub use candidate::{CandidateConventions, CloudConventions, read_candidate as read_stated};

@@ -98,6 +98,9 @@ impl RayPackChecked {
                 count(MAX_COUNTED as u64)
             ));
         }
+        if !self.unread.is_empty() {
+            notes.push(format!("Not read, for no array has that name: {}.", self.unread.join(", ")));
+        }
         let Some(cloud) = &self.cloud else { return notes };
         let range = if cloud.has_range { ", and the field range" } else { "" };
         notes.push(format!(

@@ -534,6 +534,45 @@ fn answers_that_disagree_with_themselves_are_wrong_whatever_is_right() {
     }
 }
 
+#[test]
+fn an_array_of_another_name_is_named() {
+    let renamed = |from: &str, to: &str| {
+        let folders = Folders::right();
+        let path = folders.candidate.path();
+        // What this program wrote is known to be its own.
+        std::fs::remove_file(path.join("summary.json")).unwrap();
+        for own in ["ties", "origin", "direction"] {
+            let _ = std::fs::remove_file(path.join(format!("{own}.npy")));
+        }
+        std::fs::rename(path.join(from), path.join(to)).unwrap();
+        folders
+    };
+    for (from, to, words) in [
+        ("face.npy", "faces.npy", "faces.npy (meant as face.npy?)"),
+        ("normal.npy", "Normals.npy", "Normals.npy (meant as normal.npy?)"),
+        ("t.npy", "distance.npy", "distance.npy (meant as t.npy?)"),
+        ("point.npy", "Point.npy", "Point.npy (meant as point.npy?)"),
+        ("side.npy", "temperature.npy", "temperature.npy"),
+        ("barycentric.npy", "barycentrics.npz", "barycentrics.npz (meant as barycentric.npy?)"),
+    ] {
+        let checked = renamed(from, to).check();
+        assert!(checked.passes());
+        assert_eq!(checked.unread, [words]);
+        let text = checked.document().screen();
+        assert!(text.contains(&format!("Not read, for no array has that name: {words}.")), "{text}");
+    }
+    assert_eq!(Folders::right().check().unread, [""; 0]);
+    let only = renamed("face.npy", "faces.npy").without(&["t", "range"]);
+    let conventions = CandidateConventions::default();
+    let refused =
+        check_ray_pack(only.pack.path(), only.candidate.path(), Precision::F64, conventions, &Silent);
+    let message = refused.unwrap_err().to_string();
+    assert!(
+        message.contains("folder: none of them, but faces.npy (meant as face.npy?); expected"),
+        "{message}"
+    );
+}
+
 /// What makes every ray a miss explains a program that hits nothing, as much as anything does.
 #[test]
 fn a_program_that_hits_nothing_is_told_so() {
@@ -557,6 +596,29 @@ fn a_program_that_hits_nothing_is_told_so() {
     assert_eq!((checked.comparison.counts().wrong, checked.why.as_deref()), (1, Some(nothing)));
 }
 
+/// What a program is told that answers rays upon a plane, each so far from it, with another t.
+fn walls_at(distance: f64) -> impl Fn(f64) -> String {
+    move |t: f64| {
+        let text: String = (0..49)
+            .map(|k| {
+                format!(
+                    "{},{},{},0,0,-1\n",
+                    f64::from(k % 7) * 0.25 - 0.8,
+                    f64::from(k / 7) * 0.25 - 0.8,
+                    1.0 + distance
+                )
+            })
+            .collect();
+        let rays = rays_from_bytes(text.as_bytes(), "here".as_ref()).unwrap();
+        let [pack, candidate] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+        write_ray_pack(pack.path(), (&cube(), &rays, Sides::Both), &source(), &Silent).unwrap();
+        write_npy_numbers(candidate.path().join("t.npy"), &[49], &[t; 49]).unwrap();
+        let conventions = CandidateConventions::default();
+        let checked = check_ray_pack(pack.path(), candidate.path(), Precision::F64, conventions, &Silent);
+        checked.unwrap().why.expect("a reason")
+    }
+}
+
 /// Single precision has bounds that also excuse what is no rounding.
 #[test]
 fn small_errors_are_told_as_what_they_are() {
@@ -575,6 +637,15 @@ fn small_errors_are_told_as_what_they_are() {
         .expect_why(&["100.0000 %", "if lengths are 1.0471975512 times what they are"]);
     let third = core::f64::consts::PI / 3.0;
     lengths(third, 0.0).expect_why(&["100.0000 %", "if lengths are 1.04719755119"]);
+    // Where all lengths are equal, the number of few decimals is told, and of two the factor.
+    let plate = walls_at(2.0);
+    for (length, words) in [
+        (6.0, "lengths are 3 times what they are"),
+        (2.03, "lengths are 0.03 too long"),
+        (3.0, "lengths are 1 too long"),
+    ] {
+        assert_eq!(plate(length), format!("100.0000 % agree if {words}"));
+    }
     // One of both.
     right().change("t", |_, t| t + 0.125).expect_why(&["100.0000 %", "if t is 0.125 too large"]);
     right().without(&["range"]).change("t", |_, t| t + 1e-8).expect_why(&["if t is 0.00000001 too large"]);

@@ -5,7 +5,7 @@ use raypencil_referee::ExactCast;
 use raypencil_scene::pattern::Mounting;
 use raypencil_scene::{CastRay, Pose, Sides};
 
-use super::fit::{least, median, rounded, rounded_to_all};
+use super::fit::{least, median, rounded};
 use super::limits::{of_ranges, of_steps};
 use super::list::{List, along, laid, parts, scaled, set_poses};
 use super::places::{of_exchanged_channels, of_order, of_returns};
@@ -13,6 +13,7 @@ use super::read::{CloudCase, pose_of};
 use super::turn::{Turn, azimuth_deg, turned, wrapped_deg};
 use crate::cloud::CloudFrame;
 use crate::comparison::Stated;
+use crate::pack::lengths::numbers_of;
 use crate::pack::mistakes::OfCloud;
 use crate::pack::scan::{Scan, moved};
 use crate::pack::trial::Trial;
@@ -382,20 +383,17 @@ fn estimate<'a>(
     let exact_of: Vec<(usize, f64)> =
         some.iter().filter_map(|&k| Some((k, range_of(&trial.rays[k])?))).collect();
     let stated_of = |k: usize| (cloud.point(k).0 - trial.rays[k].origin).length();
-    let pairs: Vec<(f64, f64)> = exact_of.iter().map(|&(k, exact)| (stated_of(k), exact)).collect();
-    for by in median(pairs.iter().map(|(stated, exact)| stated - exact).collect())
-        .map_or_else(Vec::new, rounded_to_all)
-    {
-        let words = format!("ranges are {} too {}", by.abs(), if by > 0.0 { "long" } else { "short" });
-        list.add(words, false, move |trial| along(trial, |_, _, length| length - by));
-    }
-    for by in median(pairs.iter().map(|(stated, exact)| stated / exact).collect())
-        .map_or_else(Vec::new, rounded_to_all)
-    {
-        if by != 1.0 && by > 0.0 {
-            list.add_factor(format!("ranges are {by} times what they are"), false, move |trial| {
+    let pairs: Vec<[f64; 2]> = exact_of.iter().map(|&(k, exact)| [stated_of(k), exact]).collect();
+    for (by, is_factor) in numbers_of(&pairs) {
+        match is_factor {
+            true => list.add_factor(format!("ranges are {by} times what they are"), false, move |trial| {
                 along(trial, |_, _, length| length / by);
-            });
+            }),
+            false => {
+                let words =
+                    format!("ranges are {} too {}", by.abs(), if by > 0.0 { "long" } else { "short" });
+                list.add(words, false, move |trial| along(trial, |_, _, length| length - by));
+            }
         }
     }
     estimate_field(list, trial, &range_of);
