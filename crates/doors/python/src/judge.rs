@@ -1,11 +1,14 @@
 //! Somebody's first hits against the exact ones.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use raypencil::cast::{
-    Comparison, RayVerdict, Stated, compare_with, comparison_headline, comparison_json, comparison_text,
+    Comparison, RayVerdict, Stated, StoredErrors, compare_with, comparison_headline, comparison_json,
+    comparison_text,
 };
 use raypencil::io::ray_rows;
 use raypencil::referee::ExactCast;
@@ -74,11 +77,11 @@ fn compared(
 }
 
 /// Compares first hits with the exact ones. `face` is -1 where nothing is hit; `t` and `range` are +Inf there, and -Inf where what
-/// is hit is too near. `hit` counts where none of these is given.
+/// is hit is too near. `hit` has to say the same. `stored` is how far storing may have moved the values of each ray, by the value's name.
 #[pyfunction]
 #[pyo3(signature = (
     mesh, rays, name, arithmetic, fronts_only, face=None, t=None, range=None, hit=None, side=None, point=None, normal=None,
-    barycentric=None, cos_incidence=None, on_stage=None
+    barycentric=None, cos_incidence=None, stored=None, on_stage=None
 ))]
 pub(crate) fn judge<'py>(
     py: Python<'py>,
@@ -96,6 +99,7 @@ pub(crate) fn judge<'py>(
     normal: Option<PyReadonlyArray2<'py, f64>>,
     barycentric: Option<PyReadonlyArray2<'py, f64>>,
     cos_incidence: Option<PyReadonlyArray1<'py, f64>>,
+    stored: Option<BTreeMap<String, PyReadonlyArray1<'py, f64>>>,
     on_stage: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let failed = |failure: Failure| failure.into_exception(py);
@@ -114,6 +118,8 @@ pub(crate) fn judge<'py>(
         };
         array.map(of)
     };
+    let mut stored = stored.unwrap_or_default();
+    let mut errors = |name: &str| stored.remove(name).map(|array| array.as_array().to_vec());
     let of_side = |number: f64| match number {
         number if number > 0.0 => Some(Side::Front),
         number if number < 0.0 => Some(Side::Back),
@@ -130,7 +136,14 @@ pub(crate) fn judge<'py>(
         normal: vectors(normal),
         barycentric: vectors(barycentric),
         cos_incidence: numbers(cos_incidence),
-        ..Stated::default()
+        stored: StoredErrors {
+            t: errors("t"),
+            range: errors("range"),
+            point: errors("point"),
+            normal: errors("normal"),
+            barycentric: errors("barycentric"),
+            cos_incidence: errors("cos_incidence"),
+        },
     };
     let mesh = mesh.clone();
     let (comparison, text, json) = watched(py, on_stage, move |watch| {

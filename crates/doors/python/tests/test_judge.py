@@ -72,9 +72,26 @@ def test_rounding_is_excused_with_a_witness(cube: Mesh) -> None:
 
 
 def test_single_precision_has_to_be_declared(cube: Mesh) -> None:
-    t = cast(cube, RAYS).t.astype(np.float32)
+    # Numbers of single precision in an array of double precision: nothing says that storing rounded them.
+    t = cast(cube, RAYS).t.astype(np.float32).astype(np.float64)
     assert not judge(cube, RAYS, {"t": t}).passes and judge(cube, RAYS, {"t": t}, "f32").passes
     assert judge(cube, RAYS, {"t": t}).why == '100.0000 % agree if arithmetic is of single precision: declare arithmetic="f32"'
+
+
+def test_exact_answers_in_fewer_digits_are_right(cube: Mesh) -> None:
+    truth = exact(cube)
+    for kind in (np.float32, np.float16):
+        stored = {name: a if a.dtype.kind != "f" else a.astype(kind) for name, a in truth.items()}
+        assert judge(cube, RAYS, stored).passes
+        # A unit of the last place is not excused.
+        hits = np.flatnonzero(np.isfinite(truth["t"]))
+        t = stored["t"].copy()
+        t[hits] += np.spacing(t[hits])
+        judged = judge(cube, RAYS, {"face": truth["face"], "t": t})
+        assert judged.wrong.tolist() == hits.tolist()
+    # A declared miss is met as the array rounds it.
+    t = np.where(np.isfinite(truth["t"]), truth["t"], 0.1).astype(np.float32)
+    assert judge(cube, RAYS, {"t": t}, miss=0.1).passes and not judge(cube, RAYS, {"t": t}, miss=0.2, explain=False).passes
 
 
 @pytest.mark.parametrize(
@@ -139,8 +156,31 @@ def test_too_near_is_told_from_a_miss(cube: Mesh) -> None:
 def test_a_miss_can_be_declared(cube: Mesh) -> None:
     truth = cast(cube, RAYS)
     assert judge(cube, RAYS, {"t": np.where(truth.hit, truth.t, 0)}, miss=0).passes
-    assert judge(cube, RAYS, {"t": np.where(truth.hit, truth.t, 7), "hit": truth.hit}).passes
+    seven = {"t": np.where(truth.hit, truth.t, 7), "hit": truth.hit}
+    assert judge(cube, RAYS, seven, miss=7).passes
+    judged = judge(cube, RAYS, seven)
+    assert judged.wrong.tolist() == np.flatnonzero(~truth.hit).tolist()
+    assert judged.why == "100.0000 % agree if 7 means no hit: declare miss=7"
+    # A face whose number is declared, where a distance says that the ray hits.
+    assert judge(cube, RAYS, {"t": np.where(truth.hit, truth.t, 0), "face": np.where(truth.hit, truth.face, 0)}, miss=0).passes
+    # All other values of rays that miss.
+    filled = {name: np.where(np.isfinite(a), a, 0) for name, a in truth.arrays.items() if name not in ("face", "side", "ties")}
+    assert judge(cube, RAYS, filled, miss=0).passes and not judge(cube, RAYS, filled, explain=False).passes
     assert judge(cube, RAYS, {"face": np.where(truth.hit, truth.face.astype(float), np.nan)}).passes
+
+
+@pytest.mark.parametrize("name", ["t", "range", "side", "point", "normal", "barycentric", "cos_incidence", "hit"])
+def test_answers_that_disagree_with_themselves_are_wrong(cube: Mesh, name: str) -> None:
+    answers = exact(cube) | {"hit": cast(cube, RAYS).hit.copy()}
+    miss, hit = np.flatnonzero(~answers["hit"])[4], np.flatnonzero(answers["hit"])[4]
+    answers[name][miss] = 0.5 if answers[name].dtype.kind == "f" else 1
+    judged = judge(cube, RAYS, answers, explain=False)
+    assert judged.wrong.tolist() == [miss]
+    assert f"face says that nothing is hit, and {name} is " in judged.text
+    if name in ("t", "range", "hit"):
+        answers = exact(cube) | {"hit": cast(cube, RAYS).hit.copy()}
+        answers[name][hit] = False if name == "hit" else np.inf
+        assert f"face says that something is hit, and {name} is " in judge(cube, RAYS, answers, explain=False).text
 
 
 def test_fronts_only_is_another_question(cube: Mesh) -> None:

@@ -203,8 +203,13 @@ def faces(name: str, values: Any) -> NDArray[np.uint32]:
     return np.ascontiguousarray(indices, dtype=np.uint32)
 
 
-def hit_faces(name: str, values: ArrayLike, miss: float | None) -> NDArray[np.int64]:
-    """Face indices of hits, flat, -1 where nothing is hit: -1, 4294967295, ``miss`` and what is not finite."""
+def hit_faces(
+    name: str, values: ArrayLike, miss: float | None, says_hit: NDArray[np.bool_] | None = None
+) -> NDArray[np.int64]:
+    """Face indices of hits, flat, -1 where nothing is hit: -1, 4294967295, what is not finite, and ``miss``.
+
+    ``miss`` is a face of rays that hit by other arrays, ``says_hit``.
+    """
     numbers = np.asarray(values).ravel()
     if numbers.dtype.kind not in "fiub":
         raise RaypencilError(f"{name} is of type {numbers.dtype}; expected face indices")
@@ -212,7 +217,7 @@ def hit_faces(name: str, values: ArrayLike, miss: float | None) -> NDArray[np.in
     if numbers.dtype.kind == "f":
         is_miss |= ~np.isfinite(numbers)
     if miss is not None:
-        is_miss |= numbers == miss
+        is_miss |= (numbers == miss) & (True if says_hit is None else ~says_hit)
     with np.errstate(invalid="ignore"):
         is_wrong = ~is_miss & ((numbers < 0) | (numbers > NO_FACE) | (numbers != np.floor(numbers)))
     if is_wrong.any():

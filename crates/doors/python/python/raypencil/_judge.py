@@ -104,8 +104,36 @@ def answers_of(answers: Any) -> Mapping[str, Any]:
     return arrays
 
 
-def _stated(answers: Mapping[str, Any], shape: _arrays.Shape, miss: float | None, is_own: bool) -> dict[str, Any]:
-    """The arrays as the engine takes them: flat, with misses told."""
+def _half_units(array: NDArray[Any], parts: int) -> NDArray[np.float64] | None:
+    """How far storing may have moved the parts of each value: half a unit in the last place of the largest.
+
+    ``None``: numbers of double precision and whole numbers are what was computed.
+    """
+    if array.dtype.kind != "f" or array.dtype.itemsize >= 8:
+        return None
+    sizes = np.where(np.isfinite(array), np.abs(array), 0)
+    units = np.where(np.isfinite(array), np.spacing(sizes), 0).astype(np.float64)
+    return np.ascontiguousarray(0.5 * units.reshape(-1, parts).max(axis=1))
+
+
+class _Stated:
+    """The arrays as the engine takes them: flat, with misses told; beside them how far storing may have moved each, and their types."""
+
+    def __init__(self) -> None:
+        self.arrays: dict[str, Any] = {}
+        self.errors: dict[str, NDArray[np.float64]] = {}
+        self.types: dict[str, np.dtype[Any]] = {}
+
+    def says_hit(self) -> NDArray[np.bool_] | None:
+        """Which rays hit by the first distance, else by the points; ``None`` where there are neither."""
+        for name in ("t", "range"):
+            if name in self.arrays:
+                return np.isfinite(self.arrays[name])
+        return np.isfinite(self.arrays["point"]).all(axis=1) if "point" in self.arrays else None
+
+
+def _stated(answers: Mapping[str, Any], shape: _arrays.Shape, miss: float | None, is_own: bool) -> _Stated:
+    """The answers, checked."""
     count = int(np.prod(shape, dtype=np.int64))
     unknown = [name for name in answers if name not in KNOWN]
     if unknown and not is_own:
@@ -119,35 +147,55 @@ def _stated(answers: Mapping[str, Any], shape: _arrays.Shape, miss: float | None
             raise RaypencilError(f"answers: {name} has the shape {array.shape}; expected {shape + last}")
         return array
 
-    stated: dict[str, Any] = {}
-    if "face" in answers:
-        stated["face"] = _arrays.hit_faces("answers: face", shaped("face", ()), miss)
-    for name in _SCALARS:
-        if name in answers:
-            numbers = _arrays.reals(f"answers: {name}", shaped(name, ())).reshape(count)
-            if name in ("t", "range"):
-                # -Inf is no miss: it says that what is hit is too near.
-                is_miss = np.isnan(numbers) if miss is None else np.isnan(numbers) | (numbers == miss)
-                numbers = np.where(is_miss, np.inf, numbers)
-            stated[name] = numbers
-    for name in _VECTORS:
-        if name in answers:
-            stated[name] = _arrays.reals(f"answers: {name}", shaped(name, (3,))).reshape(count, 3)
+    told = _Stated()
+    stated = told.arrays
+    means_miss: dict[str, NDArray[np.bool_]] = {}
+    for name in (*_SCALARS, *_VECTORS):
+        if name not in answers:
+            continue
+        parts = 3 if name in _VECTORS else 1
+        array = _arrays.array(f"answers: {name}", shaped(name, (3,) if name in _VECTORS else ()))
+        numbers = _arrays.reals(f"answers: {name}", array).reshape(count, parts)
+        error = _half_units(array, parts)
+        if error is not None:
+            told.errors[name], told.types[name] = error, array.dtype
+        is_miss = np.zeros(count, dtype=bool)
+        if miss is not None:
+            allowed = 0 if error is None else error[:, None]
+            with np.errstate(invalid="ignore"):
+                is_miss = ((numbers == miss) | (np.abs(numbers - miss) <= allowed)).all(axis=1)
+        means_miss[name] = is_miss
+        if name in ("t", "range"):
+            # -Inf is no miss: it says that what is hit is too near.
+            numbers = np.where((np.isnan(numbers[:, 0]) | is_miss)[:, None], np.inf, numbers)
+        stated[name] = numbers if name in _VECTORS else numbers.reshape(count)
+    says_hit = told.says_hit()
+    if says_hit is not None and not {"t", "range"} & set(answers):
+        says_hit = says_hit & ~means_miss["point"]
     if "hit" in answers:
-        hit = shaped("hit", ()).reshape(count).astype(bool)
-        if not {"face", "t", "range"} & set(answers):
-            stated["hit"] = hit
-        for name, none in (("face", -1), ("t", np.inf), ("range", np.inf)):
-            if name in stated:
-                is_kept = hit if name == "face" else hit | np.isneginf(stated[name])
-                stated[name] = np.where(is_kept, stated[name], none)
-    return stated
+        stated["hit"] = shaped("hit", ()).reshape(count).astype(bool)
+    if "face" in answers:
+        # Where a distance or a point says that the ray hits, the number is a face.
+        faces = shaped("face", ()).reshape(count)
+        stated["face"] = _arrays.hit_faces("answers: face", faces, miss, says_hit)
+    # Other values of a ray that misses by its own words may be `miss`, too.
+    if "face" in stated:
+        misses = stated["face"] < 0
+    elif "t" in stated or "range" in stated:
+        misses = ~np.asarray(says_hit)
+    else:
+        misses = ~stated["hit"]
+    for name in {"side", "cos_incidence", *_VECTORS} & set(stated):
+        is_none = misses & means_miss[name]
+        none = 0.0 if name == "side" else np.nan
+        stated[name] = np.where(is_none[:, None] if name in _VECTORS else is_none, none, stated[name])
+    return told
 
 
 def _explained(
     core: _raypencil.MeshCore,
     rays: NDArray[np.float64],
-    stated: Mapping[str, Any],
+    stated: _Stated,
     classes: NDArray[np.uint8],
     arithmetic: str,
     fronts_only: bool,
@@ -158,8 +206,10 @@ def _explained(
         pack, candidate = Path(folder, "pack"), Path(folder, "answers")
         candidate.mkdir()
         _raypencil.pack_rays(core, np.ascontiguousarray(rays[some]), [len(some)], pack, fronts_only)
-        for name, array in stated.items():
-            np.save(candidate / f"{name}.npy", array[some])
+        for name, array in stated.arrays.items():
+            # Truth values have no file.
+            if name != "hit":
+                np.save(candidate / f"{name}.npy", array[some].astype(stated.types.get(name, array.dtype)))
         why = _raypencil.check(pack, candidate, [], None, arithmetic)["why"]
     return None if why is None else said(why)
 
@@ -190,11 +240,12 @@ def judge(
             ``cos_incidence``, as :class:`CastResult` has them, in any type; or a :class:`CastResult`. One of ``face``, ``t``,
             ``range`` and ``hit`` must be there: ``hit`` alone is a test of occlusion, which says whether anything is hit and not
             what. A ray misses where the face is -1 or 4294967295, where t or range is +Inf or NaN,
-            where either is ``miss``, and where ``hit`` (truth values) says so. Where t and range are -Inf, what is hit is too
-            near for the ray's sensor.
-        arithmetic: the arithmetic that they were computed in, whatever type they are stored in.
+            where either is ``miss``, and where ``hit`` (truth values) says so; all must say the same, and no other value of
+            such a ray may be a number but ``miss``. Where t and range are -Inf, what is hit is too near for the ray's sensor.
+        arithmetic: the arithmetic that they were computed in. The type of each array is taken into account beside it: half a
+            unit in its last place.
         fronts_only: whether only fronts of faces were to be hit.
-        miss: a number that means no hit.
+        miss: a number that means no hit, rounded as each array holds it.
         name: a name for the messages.
         explain: where rays are wrong, look for the mistake that explains them (:attr:`Judgement.why`).
         progress: see :func:`cast`.
@@ -206,10 +257,12 @@ def judge(
     stated = _stated(answers_of(answers), shape, miss, is_own=not isinstance(answers, Mapping))
     core = as_mesh(mesh)._core
     with stages(progress) as on_stage:
-        flat = _raypencil.judge(core, of_rays, name, arithmetic, fronts_only, **stated, on_stage=on_stage)
+        flat = _raypencil.judge(
+            core, of_rays, name, arithmetic, fronts_only, **stated.arrays, stored=stated.errors, on_stage=on_stage
+        )
         why = None
         # Truth values alone have no mistake that could be told.
-        if explain and "hit" not in stated and (flat["verdict"] == WRONG).any():
+        if explain and {"face", "t", "range"} & set(stated.arrays) and (flat["verdict"] == WRONG).any():
             if on_stage is not None:
                 on_stage("looking for a mistake that explains the wrong rays")
             why = _explained(core, of_rays, stated, flat["verdict"], arithmetic, fronts_only)

@@ -187,6 +187,7 @@ def judge(
     normal: NDArray[np.float64] | None = None,
     barycentric: NDArray[np.float64] | None = None,
     cos_incidence: NDArray[np.float64] | None = None,
+    stored: dict[str, NDArray[np.float64]] | None = None,
     on_stage: _OnStage = None,
 ) -> dict[str, Any]: ...
 def render(
