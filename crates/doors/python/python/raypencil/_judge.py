@@ -126,10 +126,14 @@ class _Stated:
 
     def says_hit(self) -> NDArray[np.bool_] | None:
         """Which rays hit by the first distance, else by the points; ``None`` where there are neither."""
-        for name in ("t", "range"):
-            if name in self.arrays:
-                return np.isfinite(self.arrays[name])
-        return np.isfinite(self.arrays["point"]).all(axis=1) if "point" in self.arrays else None
+        says: NDArray[np.bool_] | None = None
+        if "t" in self.arrays:
+            says = np.isfinite(self.arrays["t"])
+        elif "range" in self.arrays:
+            says = np.isfinite(self.arrays["range"])
+        elif "point" in self.arrays:
+            says = np.isfinite(self.arrays["point"]).all(axis=1)
+        return says
 
 
 def _stated(answers: Mapping[str, Any], shape: _arrays.Shape, miss: float | None, is_own: bool) -> _Stated:
