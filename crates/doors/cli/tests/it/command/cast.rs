@@ -250,8 +250,16 @@ fn packs_of_rays_judge_arrays() {
             .unwrap();
     }
     fs::remove_file(folder.path().join("mine/face.npy")).unwrap();
+    // The other values still say that nine rays hit.
+    let shown = screen(folder.path(), &["check", "pack", "mine"], 1);
+    assert!(shown.contains("9 of 25 rays are wrong."), "{shown}");
+    assert!(shown.contains("t says that nothing is hit, and side is 1"), "{shown}");
+    for name in ["side", "point", "normal", "barycentric", "cos_incidence"] {
+        fs::remove_file(folder.path().join(format!("mine/{name}.npy"))).unwrap();
+    }
     let shown = screen(folder.path(), &["check", "pack", "mine"], 1);
     assert!(shown.contains("1 of 25 rays is wrong."), "{shown}");
+    assert!(shown.contains("Why: every ray is a miss: nothing at all is hit."), "{shown}");
     assert!(shown.contains("raypencil cast pack --ray=0,0,3,0,0,-1,0,inf --all --margins"), "{shown}");
     // The command is to be copied into a shell, whatever the folder is called.
     fs::rename(folder.path().join("pack"), folder.path().join("a;id")).unwrap();

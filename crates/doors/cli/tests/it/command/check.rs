@@ -514,10 +514,11 @@ fn a_recording_of_another_scene_or_with_a_broken_candidate_json_is_refused() {
         mine.join("range.T.npy"),
     )
     .expect("a file");
-    fs::write(folder.path().join("mine/candidate.json"), r#"{"format": 1, "program": "P"}"#).expect("a file");
+    fs::write(folder.path().join("mine/candidate.json"), r#"{"format": 1, "arithmetic": 32}"#)
+        .expect("a file");
     assert_trouble(
         &raypencil(folder.path(), &["check", &pack, "mine"]),
-        &["mine/candidate.json", "arithmetic"],
+        &["mine/candidate.json", "arithmetic: 32; expected \"f32\" or \"f64\""],
     );
 }
 

@@ -53,7 +53,7 @@ fn the_note_of_answers_to_rays_is_followed() {
     screen(at, &[&check[..], &["--arithmetic", "f64"]].concat(), 1);
     screen(at, &[&check[..], &["--miss", "-6"]].concat(), 1);
     for (keys, words) in [
-        (", \"miss\": \"high\"", "miss; expected a number or \"nan\""),
+        (", \"miss\": \"high\"", "miss: \"high\"; expected a number or \"nan\""),
         (", \"scale\": 0.001", "scale: 0.001; expected no channels and no scale"),
         (", \"channels\": {\"range.T\": \"V\"}", "channels: range.T: V; expected no channels and no scale"),
     ] {
