@@ -633,8 +633,8 @@ fn small_errors_are_told_as_what_they_are() {
     lengths(1.0, 1e-8).expect_why(&["100.0000 %", "if lengths are 0.00000001 too long"]);
     lengths(1.0, -3e-9).expect_why(&["100.0000 %", "if lengths are 0.000000003 too short"]);
     lengths(1.000_000_02, 0.0).expect_why(&["100.0000 %", "if lengths are 1.00000002 times what they are"]);
-    lengths(1.047_197_551_2, 0.0)
-        .expect_why(&["100.0000 %", "if lengths are 1.0471975512 times what they are"]);
+    lengths(1.047_297_551_2, 0.0)
+        .expect_why(&["100.0000 %", "if lengths are 1.0472975512 times what they are"]);
     let third = core::f64::consts::PI / 3.0;
     lengths(third, 0.0).expect_why(&["100.0000 %", "if lengths are 1.04719755119"]);
     // Where all lengths are equal, the number of few decimals is told, and of two the factor.
