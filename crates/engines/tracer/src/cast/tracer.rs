@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use raypencil_scene::{CastRay, Sides, Triangles};
+use rayon::prelude::*;
+use raypencil_scene::{CastRay, RaySet, Sides, Triangles};
 
 use super::frame::{ScaledRay, Walk, way_to};
 use super::packet::{Packet, how_many_together};
@@ -16,7 +17,7 @@ use crate::wide_tree::{self, Visitor, Waiting};
 ///
 /// ```
 /// use glam::DVec3;
-/// use raypencil_scene::{CastRay, Sides, Triangles};
+/// use raypencil_scene::{CastRay, FaceId, Sides, Triangles};
 /// use raypencil_tracer::TracerCast;
 ///
 /// // A triangle at z = 1, its front up.
@@ -43,6 +44,18 @@ impl TracerCast {
     pub fn traverser(&self) -> CastTraverser<'_> {
         CastTraverser { tree: &self.tree, stack: self.tree.boxes.stack(), packet: None }
     }
+
+    /// The first hit of each ray of a set, on all threads; also one that is [too near](CastRay::is_too_near) for a sensor.
+    pub fn first_of(&self, set: &RaySet) -> Vec<Option<TracedHit>> {
+        let of_part = |part: &[CastRay]| {
+            let mut first = vec![None; part.len()];
+            let each =
+                |index: usize, met: Option<TracedMeeting<'_, '_>>| first[index] = met.map(|met| *met.hit());
+            self.traverser().first_of_each(part, set.sides(), each);
+            first
+        };
+        set.rays().par_chunks(RAYS_A_PART).flat_map_iter(of_part).collect()
+    }
 }
 
 /// A traversal with its own stack.
@@ -58,6 +71,9 @@ impl std::fmt::Debug for CastTraverser<'_> {
         f.debug_struct("CastTraverser").field("tree", self.tree).finish_non_exhaustive()
     }
 }
+
+/// Rays of a set that one thread asks about by itself.
+const RAYS_A_PART: usize = 1024;
 
 /// So many packets are not formed after one that did not pay. Tuned.
 const PACKETS_LEFT_OUT: u32 = 15;
