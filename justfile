@@ -55,6 +55,8 @@ designs:
     just _design scans-again-crevassed scans-again crevassed 11:14:1 drive.scan_steps=26
     just _design steps-again steps pathfinder 11:14:1
     just _design sun-again sun-again pathfinder 11:12:1 drive.scan_steps=26
+    just _design rate rate pathfinder 1:4:1 drive.scan_steps=26
+    just _design rate-again rate pathfinder 11:14:1 drive.scan_steps=26
     just design-tables out/designs out/seeds
     cp out/designs/heights/charts/truth.clear_way_mean_m-over-beam.0.pitch_down_deg-by-beam.0.position_m.svg docs/figures/designs-clear-way.svg
     cp out/designs/heights/charts/truth.upper_bound.clear_way_mean_m-over-beam.0.pitch_down_deg-by-beam.0.position_m.svg docs/figures/designs-clear-way-bound.svg
@@ -65,9 +67,10 @@ design-tables STUDY SEEDS:
         H={{ STUDY }}/heights/table.csv H={{ STUDY }}/heights-again/table.csv H={{ STUDY }}/heights-again-crevassed/table.csv \
         C={{ STUDY }}/scans/table.csv C={{ STUDY }}/scans-again/table.csv C={{ STUDY }}/scans-again-crevassed/table.csv \
         T={{ STUDY }}/steps/table.csv T={{ STUDY }}/steps-again/table.csv S={{ STUDY }}/sun/table.csv \
-        S={{ STUDY }}/sun-again/table.csv N={{ SEEDS }}/table.csv \
+        S={{ STUDY }}/sun-again/table.csv A={{ STUDY }}/rate/table.csv A={{ STUDY }}/rate-again/table.csv N={{ SEEDS }}/table.csv \
         --pair H9,H3 --pair H9,H1 --pair H7,H1 --pair H3,H1 --pair H5,H4 --pair H6,H5 --pair H9,H8 --pair H4,C1 --pair H6,C2 \
-        --pair T1,H4 --pair T2,H9 --pair S3,S2 --pair N2,N1 --pair N3,N2 --drives docs/evidence/designs.csv -o {{ STUDY }}/tables.md
+        --pair T1,H4 --pair T2,H9 --pair S3,S2 --pair A1,A2 --pair A3,A2 --pair A4,A5 --pair A6,A5 --pair A7,A8 --pair A9,A8 --pair A5,A2 \
+        --pair A8,A2 --pair A9,A3 --pair N2,N1 --pair N3,N2 --drives docs/evidence/designs.csv -o {{ STUDY }}/tables.md
 
 _design NAME LIST PRESETS SEEDS *MORE:
     target/release/raypencil sweep data/designs/rover.toml --list data/designs/{{ LIST }}.csv --set terrain.generate.preset={{ PRESETS }} \
