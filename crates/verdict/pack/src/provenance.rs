@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use raypencil_files::{DeclaredChannel, Fault, FileError, bytes, shortened};
 use raypencil_scene::{Precision, Scene};
 use raypencil_scene_io::scene_sha256;
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -156,7 +157,10 @@ impl Provenance {
         if let Some(fault) = other_kind(&written) {
             return Err(refuse(fault));
         }
-        let read: Self = serde_json::from_slice(bytes).map_err(invalid)?;
+        let (_, read): (Format, Self) = (
+            serde_json::from_slice(bytes).map_err(invalid)?,
+            serde_json::from_slice(bytes).map_err(invalid)?,
+        );
         let of_scene = read.scene.iter().flat_map(|scene| {
             [("scene.name", &scene.name, MAX_TEXT_BYTES), ("scene.sha256", &scene.sha256, MAX_DIGEST_BYTES)]
         });
@@ -196,6 +200,13 @@ impl Provenance {
         }
         Ok(read)
     }
+}
+
+/// The number of the format, which nothing else reads: it may be there once only.
+#[derive(Deserialize)]
+struct Format {
+    #[serde(rename = "format")]
+    _format: IgnoredAny,
 }
 
 /// What the value of a key has to be, in words, and whether a value is that.

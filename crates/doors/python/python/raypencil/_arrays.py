@@ -49,8 +49,8 @@ def reals(name: str, values: Any) -> NDArray[np.float64]:
 
 def numbers_of_rays(name: str, values: Any) -> NDArray[Any]:
     """The same, but numbers of single precision stay so: a block of rays is widened when it is put together, which is exact."""
-    if type(values) is np.ndarray and values.dtype == np.float32:
-        return values
+    if type(values) in (np.ndarray, np.memmap) and values.dtype == np.float32:
+        return np.asarray(values)
     return reals(name, values)
 
 

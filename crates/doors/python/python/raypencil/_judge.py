@@ -29,6 +29,9 @@ KNOWN = ("face", *_SCALARS, *_VECTORS, "hit")
 #: Wrong rays, and as many others, on which mistakes are tried.
 _TRIED = 1000
 
+#: Rays that are said to hit something and are tried beside these.
+_FEW = 50
+
 
 class Judgement:
     """What became of each ray.
@@ -196,6 +199,20 @@ def _stated(answers: Mapping[str, Any], shape: _arrays.Shape, miss: float | None
     return told
 
 
+def _drawn(which: NDArray[np.bool_], most: int = _TRIED) -> NDArray[np.intp]:
+    """Some of these rays, drawn alike each time: the first ones are often of one kind, such as sky."""
+    found = np.flatnonzero(which)
+    return found if len(found) <= most else np.sort(np.random.default_rng(1).choice(found, most, replace=False))
+
+
+def _hits(stated: _Stated) -> NDArray[np.bool_]:
+    """Which rays are said to hit something: a sample without one would look like a program that hits nothing."""
+    if "face" in stated.arrays:
+        return np.asarray(stated.arrays["face"] >= 0)
+    of = stated.arrays.get("t", stated.arrays.get("range"))
+    return np.asarray(np.isfinite(of) if of is not None else stated.arrays["hit"])
+
+
 def _explained(
     core: _raypencil.MeshCore,
     rays: NDArray[np.float64],
@@ -205,7 +222,7 @@ def _explained(
     fronts_only: bool,
 ) -> str | None:
     """The mistake that explains the wrong rays, tried on some of them and on some others."""
-    some = np.concatenate([np.flatnonzero(classes == WRONG)[:_TRIED], np.flatnonzero(classes != WRONG)[:_TRIED]])
+    some = np.concatenate([_drawn(classes == WRONG), _drawn(classes != WRONG), _drawn(_hits(stated), _FEW)])
     with tempfile.TemporaryDirectory() as folder:
         pack, candidate = Path(folder, "pack"), Path(folder, "answers")
         candidate.mkdir()

@@ -155,6 +155,16 @@ struct Judged {
     ratios: [Option<f64>; 7],
 }
 
+/// Whether a t is the end of the ray, as it is or in single precision.
+fn is_end(ray: &CastRay, t: f64) -> bool {
+    t == ray.t_max || t == f64::from(ray.t_max as f32)
+}
+
+/// Whether weights are those of a corner.
+fn is_corner(weights: [f64; 3]) -> bool {
+    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].contains(&weights)
+}
+
 /// The same ray without its ends.
 fn endless(ray: &CastRay) -> CastRay {
     CastRay { t_min: 0.0, t_max: f64::INFINITY, ..*ray }
@@ -172,7 +182,7 @@ impl Judge<'_> {
     fn ray(&self, index: usize, ray: &CastRay) -> Judged {
         let read = self.exact.reading(ray, self.sides);
         let judged = |verdict| Judged { verdict, is_met: !matches!(read, Reading::Miss), ratios: [None; 7] };
-        if let Some(wrong) = self.disagreement(index) {
+        if let Some(wrong) = self.disagreement(index, ray) {
             return judged(RayVerdict::Wrong(wrong));
         }
         let stated = match self.stated_reading(index, ray, &read) {
@@ -208,7 +218,7 @@ impl Judge<'_> {
     }
 
     /// Where one array says that a ray hits something, and another that it does not.
-    fn disagreement(&self, index: usize) -> Option<Wrong> {
+    fn disagreement(&self, index: usize, ray: &CastRay) -> Option<Wrong> {
         let (by, is_hit) = self.stated.speaks(index);
         if let Some(hit) = self.stated.hit.as_ref().map(|hit| hit[index]).filter(|hit| *hit != is_hit) {
             return Some(Wrong::Disagreement { by, is_hit, of: "hit", number: f64::from(u8::from(hit)) });
@@ -219,12 +229,16 @@ impl Judge<'_> {
             let otherwise = match (value, is_hit) {
                 (CastValue::T | CastValue::Range, true) => !parts[0].is_finite(),
                 (_, true) => false,
-                (CastValue::T | CastValue::Range | CastValue::CosIncidence, false) => parts[0].is_finite(),
+                // Many programs leave the end of a ray as it was, beside a face that says that nothing is hit.
+                (CastValue::T, false) if by == "face" => parts[0].is_finite() && !is_end(ray, parts[0]),
+                (CastValue::T | CastValue::Range, false) => parts[0].is_finite(),
                 (CastValue::Point, false) => is_number,
-                // A side that is not said is 0, and no normal is 0 long, nor are weights 0.
-                (CastValue::Side | CastValue::Normal | CastValue::Barycentric, false) => {
-                    is_number && parts != [0.0; 3]
-                }
+                // No hit has the cosine 0.
+                (CastValue::CosIncidence, false) => parts[0].is_finite() && parts[0] != 0.0,
+                // A side that is not said is 0, and no normal is 0 long.
+                (CastValue::Side | CastValue::Normal, false) => is_number && parts != [0.0; 3],
+                // Those of no place, and those of u = v = 0, which belong to a corner.
+                (CastValue::Barycentric, false) => is_number && parts != [0.0; 3] && !is_corner(parts),
             };
             let number = parts.into_iter().find(|part| part.is_finite() || is_hit);
             otherwise.then_some(Wrong::Disagreement {

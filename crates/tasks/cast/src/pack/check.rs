@@ -21,7 +21,7 @@ use super::trial::Trial;
 use super::unread::unread;
 use super::write::RayPackCounts;
 use crate::answers::{Answers, Questions, cast_with};
-use crate::comparison::{Comparison, Stated, compare_with};
+use crate::comparison::{Comparison, Stated, Wrong, compare_with};
 
 /// A candidate, checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -294,7 +294,12 @@ fn judge(
     progress.stage(&format!("comparing {} rays", rays.len()));
     let comparison = compare_with(exact, mesh, rays, sides, stated, precision);
     let wrong: Vec<usize> = comparison.wrong().map(|(index, _)| index).collect();
-    let is_silent = says_nothing(stated, rays.len());
+    // A ray that rightly misses cannot be wrong for saying nothing.
+    let is_lost = |wrong: &Wrong| match wrong {
+        Wrong::Hit { exact, .. } | Wrong::Something { exact } => exact.hit().is_some(),
+        _ => false,
+    };
+    let is_silent = says_nothing(stated, rays.len()) && comparison.wrong().all(|(_, wrong)| is_lost(&wrong));
     let why = (!wrong.is_empty() && !is_silent).then(|| {
         progress.stage("looking for a mistake that explains the wrong rays");
         let of_cloud = case.as_ref().map(|case| of_cloud(case, exact, sides));

@@ -7,6 +7,7 @@ use raypencil_cast::{
     comparison_text, rays_from_bytes, read_stated, write_answers, write_ray_pack,
 };
 use raypencil_files::{read_npy_numbers, write_npy_numbers};
+use raypencil_referee::ExactCast;
 use raypencil_scene::{CastRay, Precision, Sides, Silent, Triangles};
 
 /// The cube from -1 to 1, its fronts outside.
@@ -487,7 +488,7 @@ fn answers_that_disagree_with_themselves_are_wrong_whatever_is_right() {
         ("point", 3, 0.0),
         ("normal", 3, 0.5),
         ("barycentric", 3, 0.25),
-        ("cos_incidence", 1, 0.0),
+        ("cos_incidence", 1, 0.5),
     ] {
         let words = format!("face says that nothing is hit, and {name} is {number}");
         wrong(&at(name, miss, parts, number), miss, &words);
@@ -514,7 +515,25 @@ fn answers_that_disagree_with_themselves_are_wrong_whatever_is_right() {
     // No normal and no weights are (0, 0, 0).
     let none = at("normal", miss, 3, 0.0);
     let weights = at("barycentric", miss, 3, 0.0).of("barycentric");
-    assert!(none.change("barycentric", move |index, _| weights[index]).check().passes());
+    let none = none.change("barycentric", move |index, _| weights[index]);
+    assert!(
+        none.change("cos_incidence", move |index, cos| if index == miss { 0.0 } else { cos })
+            .check()
+            .passes()
+    );
+    // Nor do the weights of u = v = 0, or a t that is the ray's end beside a face, say that something is hit.
+    let of_corner = at("barycentric", miss, 3, 0.0);
+    assert!(
+        of_corner
+            .change("barycentric", move |index, w| if index == 3 * miss { 1.0 } else { w })
+            .check()
+            .passes()
+    );
+    let of_edge = at("barycentric", miss, 3, 0.0).change("barycentric", move |index, w| match index {
+        index if index / 3 == miss && index % 3 < 2 => 0.5,
+        _ => w,
+    });
+    wrong(&of_edge, miss, "barycentric is 0.5");
     // A number that is declared is none, as it is stored; another one is.
     let all = ["t", "range", "point", "normal", "barycentric", "cos_incidence"];
     for (number, is_single) in [(7.5, false), (0.1, true), (0.0, false)] {
@@ -573,6 +592,38 @@ fn an_array_of_another_name_is_named() {
     );
 }
 
+/// Rays that end before anything is there, and just upon it.
+#[test]
+fn the_end_of_a_ray_beside_a_face_is_no_hit() {
+    let text: String =
+        (0..40).map(|k| format!("0.25,0.125,3,0,0,-1,0,{}\n", 1.0 + f64::from(k) / 20.0)).collect();
+    let rays = rays_from_bytes(text.as_bytes(), "here".as_ref()).unwrap();
+    let mesh = cube();
+    let exact = ExactCast::new(&mesh);
+    let passes = |faces: bool, moved: f64| {
+        let [pack, candidate] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+        write_ray_pack(pack.path(), (&cube(), &rays, Sides::Both), &source(), &Silent).unwrap();
+        let met: Vec<_> =
+            rays.rays.iter().map(|ray| exact.first(ray, Sides::Both).first().copied()).collect();
+        assert!(met.iter().flatten().count() > 5 && met.iter().any(Option::is_none));
+        let face: Vec<f64> = met.iter().map(|face| face.map_or(-1.0, |face| f64::from(face.0))).collect();
+        let t = rays.rays.iter().zip(&met).map(|(ray, face)| match face {
+            Some(face) => exact.values(ray, *face).unwrap().t.double,
+            None => ray.t_max + moved,
+        });
+        let folder = candidate.path();
+        write_npy_numbers(folder.join("t.npy"), &[40], &t.collect::<Vec<_>>()).unwrap();
+        if faces {
+            write_npy_numbers(folder.join("face.npy"), &[40], &face).unwrap();
+        }
+        let conventions = CandidateConventions::default();
+        check_ray_pack(pack.path(), folder, Precision::F64, conventions, &Silent).unwrap().comparison.passes()
+    };
+    assert!(passes(true, 0.0));
+    // Without faces it is a hit, and another number is none of the ray's.
+    assert!(!passes(false, 0.0) && !passes(true, 0.001));
+}
+
 /// What makes every ray a miss explains a program that hits nothing, as much as anything does.
 #[test]
 fn a_program_that_hits_nothing_is_told_so() {
@@ -594,6 +645,10 @@ fn a_program_that_hits_nothing_is_told_so() {
     let checked =
         check_ray_pack(pack.path(), candidate.path(), Precision::F64, conventions, &Silent).unwrap();
     assert_eq!((checked.comparison.counts().wrong, checked.why.as_deref()), (1, Some(nothing)));
+    // That nothing is hit may be right, and something else wrong.
+    let points = none().change("point", |_, value| if value.is_nan() { 0.0 } else { value });
+    let why = points.check().why;
+    assert!(why.as_deref() != Some(nothing), "{why:?}");
 }
 
 /// What a program is told that answers rays upon a plane, each so far from it, with another t.

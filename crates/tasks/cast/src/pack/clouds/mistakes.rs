@@ -321,7 +321,9 @@ const UNITS_OF_RANGE: [(f64, &str); 4] = [
 fn estimate_field(list: &mut List<'_>, trial: &Trial, range_of: &dyn Fn(&CastRay) -> Option<f64>) {
     let Some(field) = &trial.stated.range else { return };
     let t = trial.stated.t.iter().flatten();
-    let mut of_misses = field.iter().zip(t).filter(|(_, t)| !t.is_finite()).map(|(range, _)| *range);
+    // A ray without a point has no range.
+    let of_misses = field.iter().zip(t).filter(|(_, t)| !t.is_finite()).map(|(range, _)| *range);
+    let mut of_misses = of_misses.filter(|range| !range.is_nan());
     if let Some(number) =
         of_misses.next().filter(|number| number.is_finite() && of_misses.all(|other| other == *number))
     {
