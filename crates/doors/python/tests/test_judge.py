@@ -257,3 +257,26 @@ def test_hits_alone_are_tests_of_occlusion(cube: raypencil.Mesh) -> None:
     assert judge(cube, beside, {"hit": np.array(True)}).counts["wrong"] == 1
     with pytest.raises(RaypencilError, match="expected face, t, range or hit"):
         judge(cube, RAYS, {"side": np.ones(400)})
+
+
+def test_a_program_that_culls_backs_is_not_told_that_it_hits_nothing(cube: Mesh) -> None:
+    # More rays into the sky than are tried come first, then some upon the cube, and last some from inside it.
+    sky, upon, inside = np.tile([5.0, 5.0, 9.0, 0.0, 0.0, 1.0], (3000, 1)), random_rays(300)[:, :6], np.zeros((40, 6))
+    middle = np.mean(np.asarray(cube.bounds), axis=0)
+    inside[:, :3], inside[:, 3:] = middle, np.random.default_rng(3).normal(size=(40, 3))
+    rays = np.concatenate([sky, upon, inside])
+    culled = cast(cube, rays, fronts_only=True)
+    judged = judge(cube, rays, {"face": culled.face.astype(np.int64), "t": culled.t})
+    assert len(judged.wrong) >= 40 and culled.hit.sum() > 50
+    assert judged.why is not None and "nothing at all is hit" not in judged.why
+    # A program that does hit nothing is told so.
+    nothing = judge(cube, rays, {"hit": np.zeros(len(rays), bool), "t": np.full(len(rays), np.inf)})
+    assert nothing.why == "every ray is a miss: nothing at all is hit"
+
+
+def test_rays_in_a_file_are_not_widened_as_a_whole(cube: Mesh, tmp_path: Path) -> None:
+    rays = random_rays(50)[:, :6].astype(np.float32)
+    np.save(tmp_path / "rays.npy", rays)
+    mapped = np.load(tmp_path / "rays.npy", mmap_mode="r")
+    assert np.shares_memory(raypencil._arrays.RayParts(mapped, None).parts[0], mapped)
+    assert same_bits(cast(cube, mapped).t, cast(cube, rays.astype(np.float64)).t)
