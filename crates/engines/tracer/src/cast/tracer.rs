@@ -123,8 +123,8 @@ impl<'t> CastTraverser<'t> {
         any
     }
 
-    /// The nearest hit of each ray, or if `any` is enough any hit. Rays that go together are asked as a packet as long as that pays,
-    /// and else one by one, since what one needs the next finds at hand; all others take turns.
+    /// The nearest hit of each ray, or if `any` is enough any hit. Rays that go together are asked as a packet as long as that pays;
+    /// all others take turns.
     fn seek_each(
         &mut self,
         rays: &[CastRay],
@@ -137,30 +137,27 @@ impl<'t> CastTraverser<'t> {
                 each(range.start + index, met.map(|met| (met.face, met.t)));
             });
         };
-        let (mut alone, mut one_by_one) = (0..0, 0);
+        let (mut alone, mut left_out) = (0..0, 0);
         while alone.end < rays.len() {
             let at = alone.end;
             let count = how_many_together(&rays[at..]);
-            if count == 0 {
-                alone.end += 1;
+            if count == 0 || left_out > 0 {
+                left_out -= u32::from(count > 0);
+                alone.end += count.max(1);
                 continue;
             }
-            in_turns(alone, each);
-            alone = at + count..at + count;
-            let together = &rays[at..at + count];
             let packet = self.packet.get_or_insert_with(|| Box::new(Packet::EMPTY));
-            if one_by_one == 0 && packet.seek(tree, &mut self.stack, together, sides) {
-                one_by_one = if packet.was_worth_it() { 0 } else { PACKETS_LEFT_OUT };
-                for lane in 0..count {
-                    let nearest = packet.nearest(lane);
-                    each(at + lane, nearest.map(|(place, t)| (&tree.faces[place], t)));
-                }
+            if !packet.seek(tree, &mut self.stack, &rays[at..at + count], sides) {
+                alone.end += count;
                 continue;
             }
-            one_by_one = one_by_one.max(1) - 1;
-            for (k, ray) in together.iter().enumerate() {
-                each(at + k, self.nearest(ray, sides).map(|met| (met.face, met.t)));
+            left_out = if packet.was_worth_it() { 0 } else { PACKETS_LEFT_OUT };
+            in_turns(alone, each);
+            for lane in 0..count {
+                let nearest = packet.nearest(lane);
+                each(at + lane, nearest.map(|(place, t)| (&tree.faces[place], t)));
             }
+            alone = at + count..at + count;
         }
         in_turns(alone, each);
     }
