@@ -308,7 +308,7 @@ fn each<T: Send>(rays: &[CastRay], answer: impl Fn(&CastRay) -> T + Sync + Send)
 const RAYS_A_PART: usize = 256;
 
 /// The same of the tracer, which learns from the first of them whether the others go quicker together.
-pub(crate) const TRACED_RAYS_A_PART: usize = 1024;
+pub(crate) const TRACED_RAYS_A_PART: usize = 2048;
 
 fn any_exactly(exact: &ExactCast<'_>, rays: &[CastRay], sides: Sides) -> Vec<bool> {
     match rays.len() {

@@ -73,10 +73,10 @@ impl std::fmt::Debug for CastTraverser<'_> {
 }
 
 /// Rays of a set that one thread asks about by itself.
-const RAYS_A_PART: usize = 1024;
+const RAYS_A_PART: usize = 2048;
 
 /// So many packets are not formed after one that did not pay. Tuned.
-const PACKETS_LEFT_OUT: u32 = 15;
+const PACKETS_LEFT_OUT: u32 = 31;
 
 /// What a face makes of a walk.
 enum Next {
