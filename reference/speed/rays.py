@@ -455,7 +455,7 @@ def goals(grounds: dict[str, int], times: Times, costs: Times, sizes: dict[tuple
             f"{{}} {embree}",
             ratio("first", "`tracer`"),
             "Where a camera's rays meet a face several times, 64 of them walk as a packet, which halves the time. Where nearly each meets another "
-            "face, a packet is slower than its rays one by one (tried: with 16, 32 and 64 rays); it would take packets whose leaves are asked in f32, too.",
+            "face, a packet is slower than its rays in turns (tried: with 16, 32 and 64 rays); it would take packets whose leaves are asked in f32, too.",
         ),
         ("any hit, exact", 1.2, f"{{}} {embree}", ratio("any", "exact"), "The walk, as of first hits."),
         ("all hits, exact", 3.0, "{} times first hits", known(times.median("all, exact", name) for name in names), ""),
