@@ -1,7 +1,8 @@
 //! Many rays from one point, which go through the tree together.
 //!
-//! Every lane computes what [`CastFace::crossing`] computes for a single ray, operation by operation: so the bits are the same,
-//! and a test holds that.
+//! Every lane computes what [`CastFace::crossing`] computes for a single ray, operation by operation: so the bits of a crossing are
+//! the same, and a test holds that. Which faces are asked is not quite: a ray of a packet may be shown a face whose box it passes
+//! beside. That matters only for a face that lies in the ray's own plane to the last digits, whose t is then nothing but rounding.
 
 use std::ops::Range;
 
@@ -18,7 +19,7 @@ use crate::wide_tree::{Next, Visitor, Waiting};
 /// Most rays of a packet.
 const PACKET: usize = TILE;
 
-/// Fewer rays are quicker one by one. Tuned.
+/// Fewer rays are quicker in turns. Tuned.
 const FEWEST: usize = 8;
 
 /// Rays whose unit directions differ by more than this in a component are no packet: together they would meet too many
@@ -183,7 +184,7 @@ impl Packet {
         usize::try_from(of.place[lane % BLOCK]).ok().map(|place| (place, of.t[lane % BLOCK]))
     }
 
-    /// Whether so few faces are met that a packet was quicker than its rays would have been one by one. Tuned.
+    /// Whether so few faces are met that a packet was quicker than its rays would have been in turns. Tuned.
     pub(super) fn was_worth_it(&self) -> bool {
         let place = |lane: usize| self.blocks[lane / BLOCK].place[lane % BLOCK];
         let changes = (1..self.count).filter(|&lane| place(lane) != place(lane - 1)).count();

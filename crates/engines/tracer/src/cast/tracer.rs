@@ -90,7 +90,8 @@ enum Next {
 
 impl<'t> CastTraverser<'t> {
     /// The first hits of many rays, which is quicker than one after the other, above all where they start in one point: `each`
-    /// gets the index of every ray, in no particular order, and what [`first`](Self::first) would give.
+    /// gets the index of every ray, in no particular order, and what [`first`](Self::first) would give; but for faces in whose plane a
+    /// ray runs to the last digits, of which `f64` knows no t: there the two may differ.
     ///
     /// ```
     /// use glam::DVec3;
