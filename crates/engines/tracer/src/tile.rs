@@ -39,7 +39,7 @@ pub(crate) const TILE: usize = BLOCK * BLOCKS;
 const EDGE_MARGIN: f64 = 1.0 / (1u64 << 43) as f64;
 
 /// 2^-900: more than products lose that are too small for f64.
-const UNDERFLOW: f64 = f64::MIN_POSITIVE * (1_u128 << 122) as f64;
+pub(crate) const UNDERFLOW: f64 = f64::MIN_POSITIVE * (1_u128 << 122) as f64;
 
 /// A number for each ray of a block.
 pub(crate) type Lanes = [f64; BLOCK];

@@ -99,7 +99,7 @@ impl Hit for TracedMeeting<'_, '_> {
         self.face().0
     }
     fn met_side(&self) -> Side {
-        self.hit().side
+        self.side()
     }
     fn ties(&self) -> u32 {
         1

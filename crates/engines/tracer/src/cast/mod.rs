@@ -7,6 +7,7 @@
 //!
 //! ```text
 //! frame     the scaled frame, its boxes, and how wide these must be
+//! in_box    t of a ray that runs nearly in a face's plane
 //! quad      four faces at a time, asked in `f32`
 //! tracer    [`TracerCast`]: first, any and all hits
 //! packet    many rays from one point, together
@@ -16,6 +17,7 @@
 //! ```
 
 mod frame;
+mod in_box;
 mod packet;
 mod quad;
 mod traced;

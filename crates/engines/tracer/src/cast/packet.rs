@@ -1,8 +1,8 @@
 //! Many rays from one point, which go through the tree together.
 //!
 //! Every lane computes what [`CastFace::crossing`] computes for a single ray, operation by operation: so the bits of a crossing are
-//! the same, and a test holds that. Which faces are asked is not quite: a ray of a packet may be shown a face whose box it passes
-//! beside. That matters only for a face that lies in the ray's own plane to the last digits, whose t is then nothing but rounding.
+//! the same, and a test holds that. A ray of a packet may be shown a face whose box it passes beside; but what it would meet
+//! there lies in that box (`in_box`).
 
 use std::ops::Range;
 
@@ -10,7 +10,8 @@ use glam::DVec3;
 use raypencil_scene::{CastRay, Sides};
 
 use super::frame::way_to;
-use super::traced::CastFace;
+use super::in_box::{doubtful_below, moved_into_box};
+use super::traced::{CastFace, FirstMet};
 use super::tree::CastTree;
 use crate::lanes::{self, Instructions, Work};
 use crate::tile::{BLOCK, BLOCKS, Block, Lanes, SeenFace, TILE, Tile, greatest_of};
@@ -96,7 +97,7 @@ impl OfBlock {
     fn update_closest(
         &mut self,
         [ab, bc, ca]: &[Lanes; 3],
-        rays: &Block,
+        (rays, origin): (&Block, DVec3),
         (face, seen, place): (&CastFace, &SeenFace, i64),
         sides: Sides,
     ) -> bool {
@@ -118,10 +119,25 @@ impl OfBlock {
         let n_dot_offset = normal.dot(seen.offset);
         let id = i64::from(face.id.0);
         let [dx, dy, dz] = &rays.direction;
+        let doubtful = doubtful_below(face.corners, seen.offset);
+        let (mut n_dot_q, mut scaled_t) = ([0.0; BLOCK], [0.0; BLOCK]);
+        let mut any_doubtful = false;
+        for k in 0..BLOCK {
+            n_dot_q[k] = normal.dot(DVec3::new(dx[k], dy[k], dz[k]));
+            scaled_t[k] = n_dot_offset / n_dot_q[k];
+            any_doubtful |= inside[k] & (n_dot_q[k].abs() <= doubtful * rays.metres_per_t[k]);
+        }
+        if any_doubtful {
+            for k in 0..BLOCK {
+                if n_dot_q[k].abs() <= doubtful * rays.metres_per_t[k] {
+                    let direction = DVec3::new(dx[k], dy[k], dz[k]);
+                    scaled_t[k] = moved_into_box(scaled_t[k], face.corners, origin, direction);
+                }
+            }
+        }
         let mut changed = false;
         for k in 0..BLOCK {
-            let n_dot_q = normal.dot(DVec3::new(dx[k], dy[k], dz[k]));
-            let scaled_t = n_dot_offset / n_dot_q + 0.0;
+            let (n_dot_q, scaled_t) = (n_dot_q[k], scaled_t[k] + 0.0);
             let t = scaled_t * self.t_per_t[k];
             let counts = inside[k]
                 & ((n_dot_q < 0.0) | both & (n_dot_q > 0.0))
@@ -178,10 +194,11 @@ impl Packet {
         lanes::run(Instructions::Detected, PacketWalk { packet: self, tree, stack })
     }
 
-    /// The place of the face that a ray meets first in the order of the tree, and its t.
-    pub(super) fn nearest(&self, lane: usize) -> Option<(usize, f64)> {
+    /// The face of this tree that a ray meets first.
+    pub(super) fn nearest<'t>(&self, lane: usize, tree: &'t CastTree) -> Option<FirstMet<'t>> {
         let of = &self.blocks[lane / BLOCK];
-        usize::try_from(of.place[lane % BLOCK]).ok().map(|place| (place, of.t[lane % BLOCK]))
+        let face = &tree.faces[usize::try_from(of.place[lane % BLOCK]).ok()?];
+        Some(FirstMet { face, t: of.t[lane % BLOCK], side: face.side_towards(self.tile.q(lane)) })
     }
 
     /// Whether so few faces are met that a packet was quicker than its rays would have been in turns. Tuned.
@@ -259,7 +276,7 @@ impl Visitor for Seeker<'_> {
                     continue;
                 }
                 let edges = packet.tile.block_edges(k, &seen);
-                let rays = &packet.tile.blocks[k];
+                let rays = (&packet.tile.blocks[k], packet.tile.origin);
                 let seen = (face, &seen, place as i64);
                 changed |= packet.blocks[k].update_closest(&edges, rays, seen, packet.sides);
             }

@@ -6,6 +6,7 @@ use glam::DVec3;
 use raypencil_scene::{CastRay, FaceId, Side, Sides, Triangles};
 
 use super::frame::{Frame, ScaledRay};
+use super::in_box::{doubtful_below, moved_into_box};
 use crate::triangle::{PlaneCrossing, intersect};
 
 /// A face in the scaled frame.
@@ -33,6 +34,12 @@ impl CastFace {
         (b - a).cross(c - a) != DVec3::ZERO
     }
 
+    /// The side that a ray in this direction meets, if it meets the face.
+    pub(super) fn side_towards(&self, direction: DVec3) -> Side {
+        let [a, b, c] = self.corners;
+        side_of((b - a).cross(c - a).dot(direction))
+    }
+
     /// The crossing of the ray with this face, within the ray's ends and on a side that counts.
     #[inline(always)]
     pub(super) fn crossing(&self, given: &CastRay, scaled: &ScaledRay, sides: Sides) -> Option<Crossing<'_>> {
@@ -40,11 +47,22 @@ impl CastFace {
         if crossing.n_dot_q == 0.0 || sides == Sides::Fronts && crossing.n_dot_q > 0.0 {
             return None;
         }
+        let ScaledRay { ray, .. } = scaled;
+        let mut scaled_t = crossing.n_dot_offset / crossing.n_dot_q;
+        let offset = self.corners[0] - ray.origin;
+        if crossing.n_dot_q.abs() <= doubtful_below(self.corners, offset) * ray.metres_per_t {
+            scaled_t = moved_into_box(scaled_t, self.corners, ray.origin, ray.direction);
+        }
         // -0 becomes 0: they are the same t, and are written the same.
-        let scaled_t = crossing.n_dot_offset / crossing.n_dot_q + 0.0;
+        scaled_t += 0.0;
         let t = scaled_t * scaled.t_per_t;
         (t >= given.t_min && t <= given.t_max).then_some(Crossing { face: self, crossing, scaled_t, t })
     }
+}
+
+/// The side of a face that is met with this n.q.
+fn side_of(n_dot_q: f64) -> Side {
+    if n_dot_q < 0.0 { Side::Front } else { Side::Back }
 }
 
 /// A ray's crossing with a face.
@@ -56,7 +74,20 @@ pub(super) struct Crossing<'f> {
     pub(super) t: f64,
 }
 
-impl Crossing<'_> {
+/// The face that a ray meets first.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FirstMet<'t> {
+    pub(super) face: &'t CastFace,
+    /// Of the given ray.
+    pub(super) t: f64,
+    pub(super) side: Side,
+}
+
+impl<'f> Crossing<'f> {
+    pub(super) fn met(&self) -> FirstMet<'f> {
+        FirstMet { face: self.face, t: self.t, side: side_of(self.crossing.n_dot_q) }
+    }
+
     /// Whether this crossing is reported rather than `other`: it is nearer, or as near with a lower face index.
     pub(super) fn is_before(&self, other: &Self) -> bool {
         self.t < other.t || (self.t == other.t && self.face.id < other.face.id)
@@ -74,7 +105,7 @@ impl Crossing<'_> {
         let barycentric = [0, 1, 2].map(|k: usize| shares[(k + 3 - usize::from(self.face.first)) % 3]);
         TracedHit {
             face: self.face.id,
-            side: if self.crossing.n_dot_q < 0.0 { Side::Front } else { Side::Back },
+            side: side_of(self.crossing.n_dot_q),
             t: self.t,
             range: self.scaled_t * scaled.ray.metres_per_t * scaled.unit,
             point: given.origin + given.direction * self.t,
@@ -88,26 +119,30 @@ impl Crossing<'_> {
 /// The face that a ray meets first, whose values are formed when they are asked for.
 #[derive(Debug, Clone)]
 pub struct TracedMeeting<'t, 'r> {
-    face: &'t CastFace,
-    t: f64,
+    met: FirstMet<'t>,
     ray: &'r CastRay,
     frame: &'t Frame,
     hit: OnceCell<TracedHit>,
 }
 
 impl<'t, 'r> TracedMeeting<'t, 'r> {
-    pub(super) fn new(face: &'t CastFace, t: f64, ray: &'r CastRay, frame: &'t Frame) -> Self {
-        Self { face, t, ray, frame, hit: OnceCell::new() }
+    pub(super) fn new(met: FirstMet<'t>, ray: &'r CastRay, frame: &'t Frame) -> Self {
+        Self { met, ray, frame, hit: OnceCell::new() }
     }
 
     /// The face; of several at the same t, the lowest index.
     pub fn face(&self) -> FaceId {
-        self.face.id
+        self.met.face.id
+    }
+
+    /// The side that is met.
+    pub fn side(&self) -> Side {
+        self.met.side
     }
 
     /// The ray's parameter.
     pub fn t(&self) -> f64 {
-        self.t
+        self.met.t
     }
 
     /// Every value.
@@ -115,7 +150,7 @@ impl<'t, 'r> TracedMeeting<'t, 'r> {
         self.hit.get_or_init(|| {
             let scaled = self.frame.ray(self.ray);
             let crossing =
-                self.face.crossing(self.ray, &scaled, Sides::Both).expect("the ray meets the face");
+                self.met.face.crossing(self.ray, &scaled, Sides::Both).expect("the ray meets the face");
             crossing.hit(self.ray, &scaled)
         })
     }

@@ -8,7 +8,7 @@ use raypencil_scene::{CastRay, RaySet, Sides, Triangles};
 use super::frame::{ScaledRay, Walk, way_to};
 use super::packet::{Packet, how_many_together};
 use super::quad::Sheared;
-use super::traced::{CastFace, Crossing, TracedHit, TracedMeeting};
+use super::traced::{CastFace, Crossing, FirstMet, TracedHit, TracedMeeting};
 use super::tree::CastTree;
 use super::turns;
 use crate::wide_tree::{self, Visitor, Waiting};
@@ -90,8 +90,7 @@ enum Next {
 
 impl<'t> CastTraverser<'t> {
     /// The first hits of many rays, which is quicker than one after the other, above all where they start in one point: `each`
-    /// gets the index of every ray, in no particular order, and what [`first`](Self::first) would give; but for faces in whose plane a
-    /// ray runs to the last digits, of which `f64` knows no t: there the two may differ.
+    /// gets the index of every ray, in no particular order, and what [`first`](Self::first) would give.
     ///
     /// ```
     /// use glam::DVec3;
@@ -113,7 +112,7 @@ impl<'t> CastTraverser<'t> {
         mut each: impl FnMut(usize, Option<TracedMeeting<'t, 'r>>),
     ) {
         self.seek_each(rays, (sides, false), &mut |index, met| {
-            each(index, met.map(|(face, t)| TracedMeeting::new(face, t, &rays[index], &self.tree.frame)));
+            each(index, met.map(|met| TracedMeeting::new(met, &rays[index], &self.tree.frame)));
         });
     }
 
@@ -130,12 +129,12 @@ impl<'t> CastTraverser<'t> {
         &mut self,
         rays: &[CastRay],
         (sides, any): (Sides, bool),
-        each: &mut dyn FnMut(usize, Option<(&'t CastFace, f64)>),
+        each: &mut dyn FnMut(usize, Option<FirstMet<'t>>),
     ) {
         let tree = self.tree;
-        let in_turns = |range: Range<usize>, each: &mut dyn FnMut(usize, Option<(&'t CastFace, f64)>)| {
+        let in_turns = |range: Range<usize>, each: &mut dyn FnMut(usize, Option<FirstMet<'t>>)| {
             turns::nearest_of_each(tree, &rays[range.clone()], (sides, any), &mut |index, met| {
-                each(range.start + index, met.map(|met| (met.face, met.t)));
+                each(range.start + index, met.map(|met| met.met()));
             });
         };
         let (mut alone, mut left_out) = (0..0, 0);
@@ -155,8 +154,7 @@ impl<'t> CastTraverser<'t> {
             left_out = if packet.was_worth_it() { 0 } else { PACKETS_LEFT_OUT };
             in_turns(alone, each);
             for lane in 0..count {
-                let nearest = packet.nearest(lane);
-                each(at + lane, nearest.map(|(place, t)| (&tree.faces[place], t)));
+                each(at + lane, packet.nearest(lane, tree));
             }
             alone = at + count..at + count;
         }

@@ -1,7 +1,10 @@
 //! Unit tests of `cast`: the tree loses no hit that an exhaustive search has, at any scale and from any distance.
 
+use std::cell::Cell;
+
 use glam::DVec3;
 use proptest::prelude::*;
+use proptest::test_runner::TestRunner;
 use raypencil_scene::{FaceId, Side};
 
 use super::*;
@@ -96,16 +99,18 @@ fn compare_many(cast: &TracerCast, rays: &[CastRay]) -> Result<(), TestCaseError
         let first = |ray: &CastRay| {
             exhaustive(cast, ray, sides)
                 .first()
-                .map(|met| *TracedMeeting::new(met.face, met.t, ray, &cast.tree.frame).hit())
+                .map(|met| *TracedMeeting::new(met.met(), ray, &cast.tree.frame).hit())
         };
         let expected: Vec<Option<TracedHit>> = rays.iter().map(first).collect();
         let mut told = vec![None; rays.len()];
         cast.traverser().first_of_each(rays, sides, |index, met| {
             assert!(told[index].is_none());
-            told[index] = Some(met.map(|met| (met.face(), met.t(), *met.hit())));
+            told[index] = Some(met.map(|met| (met.face(), met.side(), met.t(), *met.hit())));
         });
-        let expected_told =
-            expected.iter().map(|hit| Some(hit.map(|hit| (hit.face, hit.t, hit)))).collect::<Vec<_>>();
+        let expected_told = expected
+            .iter()
+            .map(|hit| Some(hit.map(|hit| (hit.face, hit.side, hit.t, hit))))
+            .collect::<Vec<_>>();
         prop_assert_eq!(told, expected_told);
         let any: Vec<bool> = expected.iter().map(Option::is_some).collect();
         prop_assert_eq!(cast.traverser().any_of_each(rays, sides), any);
@@ -210,7 +215,7 @@ fn rays_go_as_packets_while_that_pays() {
         let mut packet = Packet::EMPTY;
         assert!(packet.seek(&cast.tree, &mut cast.tree.boxes.stack(), &rays, Sides::Both));
         assert_eq!(packet.was_worth_it(), pays);
-        let hits = (0..64).filter(|&lane| packet.nearest(lane).is_some()).count();
+        let hits = (0..64).filter(|&lane| packet.nearest(lane, &cast.tree).is_some()).count();
         assert!(hits > 50, "{hits}");
         compare_many(cast, &rays[..8]).unwrap();
     }
@@ -231,6 +236,63 @@ fn rays_go_as_packets_while_that_pays() {
     for rays in [&wide, &far, &two] {
         compare_many(&coarse, rays).unwrap();
     }
+}
+
+/// Squares in a plane, and as many rays from one point of it to others: f64 sees both only nearly in one plane.
+fn rays_in_the_plane_of_a_sheet(
+    along: [DVec3; 2],
+    eye: DVec3,
+    size: f64,
+    side: u32,
+) -> (Triangles, Vec<CastRay>) {
+    let at = |x: f64, y: f64| (along[0] * x + along[1] * y) * size;
+    let vertex = |k: u32| at(f64::from(k / (side + 1)), f64::from(k % (side + 1))).to_array();
+    let square = |k: u32| {
+        let at = k / side * (side + 1) + k % side;
+        [[at, at + side + 1, at + side + 2], [at, at + side + 2, at + 1]]
+    };
+    let vertices = (0..(side + 1).pow(2)).map(vertex).collect();
+    let mesh = Triangles::new(vertices, (0..side * side).flat_map(square).collect()).unwrap();
+    let origin = at(-eye.x.abs(), 4.0 * eye.y);
+    let ray = |k: u32| {
+        let to = at(f64::from(side) * eye.z.abs(), f64::from(side) * f64::from(k) / 64.0);
+        CastRay::new(origin, to - origin)
+    };
+    (mesh, (0..64).map(ray).collect())
+}
+
+/// Rays in a plane in all ways of asking: what is met must not depend on what else is asked, nor lie outside the face's box.
+#[test]
+fn a_ray_in_a_faces_plane_meets_it_within_its_box() {
+    let met = Cell::new(0);
+    let mut ran = TestRunner::deterministic();
+    let given = ([within_one(), within_one()], within_one(), -40_i32..40, 1_u32..12);
+    ran.run(&given, |(along, eye, exponent, side)| {
+        let (mesh, rays) = rays_in_the_plane_of_a_sheet(along, eye, libm::scalbn(1.0, exponent), side);
+        if rays.iter().any(|ray| ray.validate("ray").is_err()) {
+            return Ok(());
+        }
+        let cast = TracerCast::new(&mesh);
+        for ray in &rays {
+            let all = exhaustive(&cast, ray, Sides::Both);
+            let first = cast.traverser().first(ray, Sides::Both);
+            prop_assert_eq!(first.map(|hit| (hit.face, hit.t)), all.first().map(|hit| (hit.face.id, hit.t)));
+            if let Some(hit) = first {
+                let corners = mesh.corners(hit.face);
+                let low = corners[0].min(corners[1]).min(corners[2]);
+                let high = corners[0].max(corners[1]).max(corners[2]);
+                let beside = (low - hit.point).max(hit.point - high).max_element();
+                let largest = high.abs().max(low.abs()).max(ray.origin.abs()).max_element();
+                prop_assert!(beside <= 80.0 * f64::EPSILON * largest, "{beside} of {largest}");
+            }
+        }
+        compare_many(&cast, &rays)?;
+        let any = rays.iter().filter(|ray| cast.traverser().any(ray, Sides::Both)).count();
+        met.set(met.get() + any);
+        Ok(())
+    })
+    .unwrap();
+    assert!(met.get() > 500, "{met:?} rays met the sheet in their plane");
 }
 
 #[test]
