@@ -10,6 +10,8 @@ use raypencil::Progress;
 use raypencil::io::{harmless, harmless_line};
 use raypencil::survey::Warning;
 
+use crate::closed_output;
+
 /// The first error of a write to standard output since the command began; nothing for a closed pipe.
 static FAILED_WRITE: Mutex<Option<std::io::Error>> = Mutex::new(None);
 
@@ -69,7 +71,7 @@ pub(crate) fn print(text: &str) {
 
 /// Keeps the error of a write to standard output.
 pub(crate) fn note(written: std::io::Result<()>) {
-    if let Err(error) = written
+    if let Err(error) = closed_output::error().map_or(written, Err)
         && error.kind() != std::io::ErrorKind::BrokenPipe
     {
         failed().get_or_insert(error);

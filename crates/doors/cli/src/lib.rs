@@ -33,6 +33,7 @@ mod args;
 mod campaign;
 mod cast;
 mod check;
+mod closed_output;
 mod completions;
 mod console;
 mod diff;

@@ -47,6 +47,27 @@ fn an_answer_that_cannot_be_written_is_an_error() {
     }
 }
 
+/// `>&-`. An output that is thrown away on purpose is none of this, however it was opened.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_closed_standard_output_is_an_error_and_the_null_device_is_none() {
+    let folder = folder();
+    for line in ["--version", "probe small.toml --pixel 3,3", "probe small.toml --pixel 3,3 --json"] {
+        let with = |output: &str| {
+            let line = format!("exec {} {line} {output}", env!("CARGO_BIN_EXE_raypencil"));
+            std::process::Command::new("sh").args(["-c", &line]).current_dir(folder.path()).output().unwrap()
+        };
+        let closed = with(">&-");
+        let message = text(&closed.stderr);
+        assert_eq!(closed.status.code(), Some(2), "{line}: {message}");
+        assert!(message.contains("standard output: cannot write"), "{line}: {message}");
+        for thrown_away in [">/dev/null", "1<>/dev/null"] {
+            let status = with(thrown_away).status;
+            assert_eq!(status.code(), Some(0), "{line} {thrown_away}");
+        }
+    }
+}
+
 #[test]
 fn a_reader_who_has_seen_enough_is_no_error() {
     let folder = folder();
