@@ -1,5 +1,6 @@
 //! NPZ, NumPy's archive of arrays: a ZIP file with an NPY file for each.
 
+use std::collections::BTreeSet;
 use std::io::{Cursor, Read};
 use std::path::Path;
 
@@ -61,6 +62,9 @@ pub fn npz_from_bytes(bytes: &[u8], file: &Path, limits: &Limits) -> Result<Vec<
         let found = format!("{} files", archive.len());
         return Err(refuse(Fault::new("archive", found, format!("at most {MAX_ARRAYS}"))));
     }
+    if let Some(array) = listed_twice(bytes, archive.central_directory_start()) {
+        return Err(refuse(Fault::new(format!("array {array:?}"), "there twice", "each array once")));
+    }
     // A small file could ask for gigabytes.
     let inflated = MAX_INFLATED_BYTES.max(MAX_EXPANSION.saturating_mul(bytes.len() as u64));
     let mut left = Limits { bytes: limits.bytes.min(inflated), ..*limits };
@@ -85,10 +89,28 @@ pub fn npz_from_bytes(bytes: &[u8], file: &Path, limits: &Limits) -> Result<Vec<
         left.bytes = left.bytes.saturating_sub(size);
         let read = raster_from_bytes(&contents, &Limits { bytes: limits.bytes, ..*limits });
         let Some(read) = read.map_err(|fault| refuse(fault.inside(&place)))? else { continue };
-        if arrays.iter().any(|(other, _)| other == array) {
-            return Err(refuse(Fault::new(place, "there twice", "each array once")));
-        }
         arrays.push((array.to_string(), read));
     }
     Ok(arrays)
+}
+
+/// An array that stands twice in the list at the end of an archive, which begins at `start`. The crate `zip` keeps the last of one
+/// name, and does not say so.
+fn listed_twice(bytes: &[u8], start: u64) -> Option<String> {
+    let mut rest = bytes.get(usize::try_from(start).ok()?..)?;
+    let mut seen = BTreeSet::new();
+    // 46 bytes, then the name, an extra field and a comment, whose lengths are among them. (APPNOTE.TXT, section 4.3.12)
+    while let Some((header, after)) = rest.split_first_chunk::<46>() {
+        if !header.starts_with(b"PK\x01\x02") {
+            break;
+        }
+        let length = |at: usize| usize::from(u16::from_le_bytes([header[at], header[at + 1]]));
+        let [name, extra, comment] = [28, 30, 32].map(length);
+        let own = after.get(..name)?;
+        if let Some(array) = own.strip_suffix(b".npy").filter(|array| !seen.insert(*array)) {
+            return Some(String::from_utf8_lossy(array).into_owned());
+        }
+        rest = after.get(name + extra + comment..)?;
+    }
+    None
 }

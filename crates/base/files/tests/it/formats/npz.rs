@@ -69,3 +69,44 @@ fn damaged_and_hostile_archives_are_refused() {
     let few = Limits { bytes: 1 << 20, ..Limits::default() };
     assert!(refusal(&bytes, &few).contains("array \"zeros\": 8388"), "{}", refusal(&bytes, &few));
 }
+
+#[test]
+fn limits_hold_for_all_arrays_of_an_archive_together() {
+    let read = |bytes: &[u8], most: u64| {
+        let limits = Limits { bytes: most, ..Limits::default() };
+        npz_from_bytes(bytes, Path::new("a.npz"), &limits).map(|arrays| arrays.len())
+    };
+    // 80 000 bytes each; the header of an array may have 65 536 beside them.
+    let numbers = npy("100, 100", &[0.5; 10_000]);
+    let entries = ["a.npy", "b.npy", "c.npy"].map(|name| (name, numbers.as_slice()));
+    let three = archive(&entries, CompressionMethod::Stored);
+    assert_eq!(read(&three, 240_000).unwrap(), 3);
+    let error = read(&three, 100_000).unwrap_err().to_string();
+    assert!(error.starts_with("a.npz: array \"c\": "), "{error}");
+    // As many files as there may be, and one more.
+    let names: Vec<String> = (0..1025).map(|k| format!("{k}.txt")).collect();
+    let files = |count: usize| -> Vec<u8> {
+        let entries: Vec<(&str, &[u8])> =
+            names[..count].iter().map(|name| (name.as_str(), &b""[..])).collect();
+        archive(&entries, CompressionMethod::Stored)
+    };
+    assert_eq!(read(&files(1024), 1000).unwrap(), 0);
+    let error = read(&files(1025), 1000).unwrap_err().to_string();
+    assert_eq!(error, "a.npz: archive: 1025 files; expected at most 1024");
+}
+
+#[test]
+fn an_array_that_is_there_twice_is_refused_wherever_the_second_one_stands() {
+    let [one, two] = [1.0, 2.0].map(|number| npy("1, 1", &[number]));
+    let mut bytes =
+        archive(&[("aa.npy", &one), ("bb.npy", &one), ("cc.npy", &two)], CompressionMethod::Stored);
+    // In its own header, and in the list at the end.
+    while let Some(at) = bytes.windows(6).position(|name| name == b"cc.npy") {
+        bytes[at..at + 2].copy_from_slice(b"aa");
+    }
+    let found = npz_from_bytes(&bytes, Path::new("a.npz"), &Limits::default());
+    assert_eq!(
+        found.expect_err("a refusal").to_string(),
+        "a.npz: array \"aa\": there twice; expected each array once"
+    );
+}
