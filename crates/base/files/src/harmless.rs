@@ -79,6 +79,27 @@ mod tests {
     }
 
     #[test]
+    fn each_letter_that_turns_the_writing_or_ends_a_line_is_replaced() {
+        // Of the Unicode standard: marks, embeddings and overrides, isolates; the separators of lines and of paragraphs.
+        let turning = ["\u{61c}\u{200e}\u{200f}", "\u{202a}\u{202b}\u{202c}\u{202d}\u{202e}"];
+        let all = turning.concat() + "\u{2066}\u{2067}\u{2068}\u{2069}\u{2028}\u{2029}";
+        for letter in all.chars() {
+            assert_eq!(harmless(&format!("a{letter}b")), "a\u{fffd}b", "{letter:?}");
+        }
+        // Their neighbours are letters like others.
+        let others = "\u{61b}\u{61d}\u{200d}\u{2010}\u{2027}\u{202f}\u{2065}\u{206a}";
+        assert_eq!(harmless(others), others);
+    }
+
+    #[test]
+    fn each_letter_that_markdown_reads_has_a_backslash() {
+        for letter in "\\`*_{}[]()<>#|&~!$@:".chars() {
+            assert_eq!(markdown_text(&format!("a{letter}b")), format!("a\\{letter}b"));
+        }
+        assert_eq!(markdown_text("a-b.c, 1+2=3 'x' \"y\""), "a-b.c, 1+2=3 'x' \"y\"");
+    }
+
+    #[test]
     fn a_source_keeps_its_length() {
         let text = "a = \"\u{1b}[8m\u{202e}\u{9b}\"\r\n\t\u{e9}";
         let shown = harmless_source(text);

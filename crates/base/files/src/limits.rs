@@ -67,3 +67,15 @@ impl Limits {
         Self { size: Some((width, height)), ..Self::default() }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_of_the_memory_is_so_much_of_it() {
+        // Far more than any other test of this process asks for.
+        limit_memory(1 << 62);
+        assert_eq!([1, 4, 6].map(part_of_memory), [1 << 62, 1 << 60, (1 << 62) / 6]);
+    }
+}

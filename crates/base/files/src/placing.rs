@@ -101,3 +101,15 @@ fn enter_noted(noted: Option<(PathBuf, String)>) {
         enter(&place, &sha256);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bare_name_is_of_the_current_folder() {
+        for (file, folder) in [("a", "."), ("x/a", "x"), ("/a", "/"), ("./a", ".")] {
+            assert_eq!(folder_of(Path::new(file)), Path::new(folder), "{file}");
+        }
+    }
+}

@@ -28,6 +28,11 @@ mod tests {
         for plain in ["data/scenes/a-b_c.toml", "x=1,y@z:2+3%", "3"] {
             assert_eq!(quoted(plain), plain);
         }
+        // Of all signs of ASCII but letters and digits these alone mean nothing to a shell.
+        for sign in (33..127_u8).map(char::from).filter(|sign| !sign.is_alphanumeric()) {
+            let word = format!("a{sign}b");
+            assert_eq!(quoted(&word) == word, "._-/+@%:,=".contains(sign), "{word}");
+        }
         for (word, expected) in [("", "''"), ("a b", "'a b'"), ("$(x)", "'$(x)'"), ("it's", r"'it'\''s'")] {
             assert_eq!(quoted(word), expected);
         }

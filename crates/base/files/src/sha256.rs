@@ -81,4 +81,23 @@ mod tests {
         assert_eq!(combined_sha256_hex(&[sha256(b"abc")]), abc);
         assert_ne!(combined_sha256_hex(&[sha256(b"abc"), sha256(b"abc")]), abc);
     }
+
+    #[test]
+    fn each_of_several_parts_and_their_order_count() {
+        let parts = [sha256(b"1"), sha256(b"2"), sha256(b"3")];
+        let [first, second, third] = parts;
+        assert_eq!(combined_sha256_hex(&parts), hex_digits(&sha256(&[first, second, third].concat())));
+        assert_ne!(combined_sha256_hex(&[second, first, third]), combined_sha256_hex(&parts));
+        assert_ne!(combined_sha256_hex(&parts[..2]), combined_sha256_hex(&parts));
+    }
+
+    #[test]
+    fn a_file_of_several_pieces_has_the_size_and_the_digest_of_all() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("large");
+        // Two buffers and a bit.
+        let bytes: Vec<u8> = (0..(1_u32 << 17) + 5).map(|k| (k % 251) as u8).collect();
+        std::fs::write(&path, &bytes).unwrap();
+        assert_eq!(file_sha256(&path).unwrap(), ((1 << 17) + 5, sha256(&bytes)));
+    }
 }

@@ -208,8 +208,13 @@ mod tests {
         assert_eq!(Storage::F32.ulp(f64::from(f32::MAX)), (0..104).fold(1.0, |power, _| 2.0 * power));
         assert!(Storage::F32.ulp(f64::INFINITY).is_nan() && Storage::F64.ulp(f64::NAN).is_nan());
         assert_eq!(Storage::Whole.ulp(7.0), 1.0);
+        assert!(Storage::Whole.ulp(7.5).is_nan());
         let steps = |step| Storage::Steps(Step::new(step).unwrap());
         assert_eq!(steps(0.001).ulp(3.2), 0.001);
+        // From 2^(digits + 1) on the next whole number is another one's.
+        assert_eq!(Storage::F16.first_ambiguous_whole(), Some(2048));
+        assert_eq!(Storage::F32.first_ambiguous_whole(), Some(16_777_216));
+        assert_eq!([Storage::F16, Storage::F32].map(|storage| storage.ulp(2048.0)), [2.0, 1.0 / 4096.0]);
         // The coarser comes first: centimetres before millimetres, both before half precision.
         assert!(steps(0.01) < steps(0.001) && steps(0.001) < Storage::F16);
         assert_eq!([0.0, -1.0, f64::NAN, f64::INFINITY].map(Step::new), [None; 4]);

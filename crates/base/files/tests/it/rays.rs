@@ -1,7 +1,7 @@
 //! Rays from files: NPY and CSV, and what is refused.
 
 use proptest::prelude::*;
-use raypencil_files::{RayArray, rays_from_bytes};
+use raypencil_files::{RayArray, ray_rows, rays_from_bytes};
 
 fn read(bytes: &[u8]) -> Result<RayArray, String> {
     rays_from_bytes(bytes, "rays".as_ref()).map_err(|error| error.to_string())
@@ -54,6 +54,15 @@ fn rows_of_numbers_are_rays() {
 }
 
 #[test]
+fn rows_of_rays_have_a_ninth_number_if_one_of_them_has_a_shortest_range() {
+    let rays = read(b"0,0,0,1,0,0,0,inf,0.8\n1,2,3,0,1,0,0.5,2,0\n").unwrap().rays;
+    let (width, numbers) = ray_rows(&rays);
+    assert_eq!((width, numbers.len()), (9, 18));
+    assert_eq!(numbers[9..], [1.0, 2.0, 3.0, 0.0, 1.0, 0.0, 0.5, 2.0, 0.0]);
+    assert_eq!(ray_rows(&rays[1..]), (8, vec![1.0, 2.0, 3.0, 0.0, 1.0, 0.0, 0.5, 2.0]));
+}
+
+#[test]
 fn a_heading_names_the_columns() {
     let ray = |text: &str| {
         let found = read(text.as_bytes()).unwrap();
@@ -74,6 +83,8 @@ fn a_heading_names_the_columns() {
     assert_eq!(ray("# dx,dy,dz\n1,2,3,4,5,6\n# dx,dy,dz,ox,oy,oz\n"), plain);
     let prose = "# rays: ox, oy, oz are the origin, dx, dy, dz the direction\n1,2,3,4,5,6";
     assert_eq!(ray(prose), plain);
+    // Of two headings the one next to the numbers counts.
+    assert_eq!(ray("# ox,oy,oz,dx,dy,dz\n# dx,dy,dz,ox,oy,oz\n4,5,6,1,2,3"), plain);
     // Whatever stands between the names and around them, and before the whole text.
     for heading in
         ["# \"dx\",\"dy\",\"dz\",\"ox\",\"oy\",\"oz\"", "# dx;dy;dz;ox;oy;oz", "#dx dy\tdz  ox oy oz"]
@@ -120,6 +131,7 @@ fn each_wrong_file_is_told_where_it_is_wrong() {
             b"# dx,dy,dz,ox [m],oy [m],oz [m]\n0,0,0,0,0,1".to_vec(),
             "rays: line 1: \"ox [m]\"; expected a heading",
         ),
+        (b"# x,y,z,dx/m,dy/m,dz/m\n0,0,0,0,0,1".to_vec(), "rays: line 1: \"x\"; expected a heading"),
         (b"\nox,oy,oz,dx,dy\n".to_vec(), "rays: line 2: no dz; expected a heading of the names"),
         (b"ox,oy,oz,dx,dy,dz,dx\n".to_vec(), "rays: line 1: dx twice; expected a heading of the names"),
         (

@@ -43,6 +43,22 @@ fn only_what_a_run_has_made_is_removed() {
 }
 
 #[test]
+fn a_file_that_a_run_has_removed_again_is_not_its_own() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    let output = OutputFolder::begin(folder).unwrap();
+    for name in ["a", "b"] {
+        write_atomically(folder.join(name), |file| file.write_all(name.as_bytes())).unwrap();
+    }
+    disk::remove_file(&folder.join("a")).unwrap();
+    output.finish().unwrap();
+    // Somebody puts the same there.
+    std::fs::write(folder.join("a"), "a").unwrap();
+    run(folder, &["b"]);
+    assert_eq!(names(folder), ["a", "b"]);
+}
+
+#[test]
 fn a_file_that_is_made_again_with_the_same_content_stays() {
     let folder = TempDir::new().unwrap();
     run(folder.path(), &["a"]);
@@ -287,12 +303,62 @@ fn results_of_something_else_are_not_replaced_unasked() {
     assert_eq!(names(folder), ["b"]);
     run_of("facets", true, "c").unwrap();
     assert_eq!(names(folder), ["c"]);
+    // A subject has one line in the list, whatever letters it has.
+    run_of("fac\u{1b}ets\r", true, "c").unwrap();
+    assert_eq!(subject_of(folder).as_deref(), Some("fac ets "));
+    run_of("fac\u{1b}ets\r", false, "c").unwrap();
     // Results that are gone, or that were changed, are nobody's.
     std::fs::write(folder.join("c"), "mine").unwrap();
     run_of("pyramids", false, "d").unwrap();
     assert_eq!(names(folder), ["c", "d"]);
     run(folder, &["e"]);
     assert_eq!((names(folder), subject_of(folder)), (vec!["c".to_string(), "e".to_string()], None));
+    // A list may name anything; files beside the folder are no results in it.
+    let inner = folder.join("inner");
+    std::fs::create_dir(&inner).unwrap();
+    let (_, digest) = file_sha256_hex(&folder.join("c")).unwrap();
+    for (name, is_result) in [("../c", false), ("c", true)] {
+        let list = format!("{}\n# results of facets\n{digest}  {name}\n", heading(&inner));
+        std::fs::write(inner.join(MADE_NAME), list).unwrap();
+        std::fs::write(inner.join("c"), "mine").unwrap();
+        assert_eq!(subject_of(&inner).is_some(), is_result, "{name}");
+    }
+}
+
+#[test]
+fn inputs_that_an_earlier_run_has_made_are_refused_and_no_others() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    run(folder, &["maps/a", "b", "gone"]);
+    std::fs::create_dir(folder.join("other")).unwrap();
+    for name in ["mine", "maps/mine", "other/mine"] {
+        std::fs::write(folder.join(name), "mine").unwrap();
+    }
+    std::fs::remove_file(folder.join("gone")).unwrap();
+    let output = OutputFolder::begin(folder).unwrap();
+    // A folder is an input with all that is in it.
+    let made = ["maps/a", "b", "maps", ".", "maps/../b"];
+    let others = ["mine", "maps/mine", "other/mine", "other", "gone", "nowhere", ".."];
+    for (name, is_made) in made.map(|name| (name, true)).into_iter().chain(others.map(|name| (name, false))) {
+        let found = output.refuse_inputs(&[&folder.join(name)]);
+        let is_refused = matches!(found, Err(FolderError::IsInput { .. }));
+        assert_eq!(is_refused, is_made, "{name}: {found:?}");
+    }
+    // Any one of several.
+    assert!(output.refuse_inputs(&[&folder.join("mine"), &folder.join("b")]).is_err());
+}
+
+#[test]
+fn what_a_run_within_a_run_has_made_goes_with_its_list() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    let outer = OutputFolder::begin(folder).unwrap();
+    run(&folder.join("inner"), &["a"]);
+    assert!(folder.join("inner").join(MADE_NAME).exists());
+    outer.finish().unwrap();
+    run(folder, &["z"]);
+    assert_eq!(names(folder), ["z"]);
+    assert!(!folder.join("inner").exists());
 }
 
 #[test]
@@ -323,14 +389,29 @@ fn what_a_run_that_died_had_put_in_place_goes_with_the_next() {
     let list = std::fs::read(folder.join(MADE_NAME)).unwrap();
     drop(died);
     std::fs::write(folder.join(MADE_NAME), list).unwrap();
-    // The last line was cut off.
-    std::fs::write(folder.join(LOCK_NAME), [lock, b"\n0123  mi".to_vec()].concat()).unwrap();
+    // The last line was cut off: what is left of it may be the name and the digest of somebody else's file.
+    let cut = format!("\n{}  mine", crate::hex_digits(&crate::sha256(b"mine")));
+    std::fs::write(folder.join(LOCK_NAME), [lock, cut.into_bytes()].concat()).unwrap();
     std::fs::write(folder.join("d"), "changed").unwrap();
     // A run that dies at once keeps the knowledge.
     drop(OutputFolder::begin(folder).unwrap());
     run(folder, &["z"]);
     assert_eq!(names(folder), ["d", "mine", "z"]);
     assert!(!folder.join(LOCK_NAME).exists());
+}
+
+/// A list has a line for each file: a name of two lines would be that of another file.
+#[cfg(unix)]
+#[test]
+fn a_name_of_two_lines_is_not_taken_for_its_first() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    let output = OutputFolder::begin(folder).unwrap();
+    write_atomically(folder.join("a\nb"), |file| file.write_all(b"same")).unwrap();
+    output.finish().unwrap();
+    std::fs::write(folder.join("a"), "same").unwrap();
+    run(folder, &["z"]);
+    assert_eq!(names(folder), ["a", "a\nb", "z"]);
 }
 
 #[test]

@@ -223,6 +223,14 @@ fn whole_numbers_count_a_unit_and_0_is_no_reading() {
     let cells = |key: &str| (0..4).map(|index| read.by_key[key].values.real(index)).collect::<Vec<_>>();
     assert_eq!(cells("camera/depth.Z"), [1.5, f64::INFINITY, f64::INFINITY, f64::INFINITY]);
     assert_eq!(read.by_key["camera/depth.Z"].storage.to_string(), "steps of 0.001 m");
+    // Each length of a depth image counts it.
+    let others = Folder::new();
+    for name in ["range.T", "view.Z"] {
+        others.wholes(&format!("camera/{name}.npy"), &[2500]);
+    }
+    let of_others = others.read(&scale).unwrap();
+    let lengths = ["camera/range.T", "camera/view.Z"].map(|key| of_others.by_key[key].values.real(0));
+    assert_eq!(lengths, [2.5, 2.5]);
     // Indices count nothing.
     assert_eq!(cells("camera/face.I"), [1.0, 0.0, 4_294_967_295.0, 3.0]);
     assert_eq!(read.by_key["camera/face.I"].storage, Storage::Whole);
@@ -277,4 +285,20 @@ fn pictures_for_people_are_passed_over_where_maps_are_asked_for() {
     assert!(read(&channels(&["depth.Z=preview"]), Some(&names)).unwrap_err().contains("preview.png: header"));
     picture("camera/depth.Z.png", b"not even a picture");
     assert!(read(&Declared::default(), Some(&names)).unwrap_err().contains("depth.Z.png: header"));
+}
+
+#[test]
+fn what_concerned_nothing_is_left_out_of_what_was_declared() {
+    let folder = Folder::new();
+    folder.exr("camera.exr", &[("depth.Z", 1.0)]);
+    let declared = Declared {
+        channels: ["depth.Z=depth.Z", "range.T=nowhere"].map(|one| one.parse().unwrap()).to_vec(),
+        scale: Some(0.001),
+        may_be_absent: true,
+        ..Declared::default()
+    };
+    let read = folder.read(&declared).unwrap();
+    let used = declared.used(&read.used);
+    let maps: Vec<&str> = used.channels.iter().map(|one| one.map.as_str()).collect();
+    assert_eq!((maps, used.scale), (vec!["depth.Z"], None));
 }

@@ -7,7 +7,7 @@ use ::exr::prelude::{
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 
-use raypencil_files::{Attributes, ExrMap, Limits, Raster, read_exr, write_exr};
+use raypencil_files::{Attributes, ExrMap, Limits, Raster, read_exr, read_exr_parts, write_exr};
 use raypencil_scene::{FaceId, Hit, Image, Maybe, Quantities, SensorId, SensorMap};
 
 const WIDTH: u32 = 37;
@@ -266,8 +266,10 @@ fn sizes_windows_and_parts_that_do_not_fit_are_refused() {
     assert_eq!(refusal(&path, &Limits::of_size(37, 21)), "data window: 37 x 20 cells; expected 37 x 21");
     let few = Limits { cells: 700, ..Limits::default() };
     assert_eq!(refusal(&path, &few), "data window: 37 x 20 cells; expected 1 to 700 cells");
-    let small = Limits { bytes: 2000, ..Limits::default() };
-    assert_eq!(refusal(&path, &small), "channels: 2960 bytes; expected at most 2000");
+    let small = Limits { bytes: 2959, ..Limits::default() };
+    assert_eq!(refusal(&path, &small), "channels: 2960 bytes; expected at most 2959");
+    let enough = Limits { bytes: 2960, ..Limits::default() };
+    assert!(read_exr(&path, &enough).is_ok());
 
     // A crop: the data window is shifted against the display window.
     let shifted = LayerAttributes { layer_position: Vec2(2, 0), ..LayerAttributes::default() };
@@ -293,6 +295,11 @@ fn sizes_windows_and_parts_that_do_not_fit_are_refused() {
     ExrImage::from_layers(attributes, layers).write().to_file(&path).unwrap();
     let expected = "header: 2 parts; expected one part";
     assert_eq!(refusal(&path, &Limits::default()), expected);
+    // Limits hold for all parts together.
+    let parts = |bytes: u64| read_exr_parts(&path, &Limits { bytes, ..Limits::default() });
+    assert_eq!(parts(5920).unwrap().len(), 2);
+    let error = parts(5919).unwrap_err().to_string();
+    assert!(error.ends_with("channels: 5920 bytes; expected at most 5919"), "{error}");
 }
 
 /// A small file, as its path and its bytes.
@@ -365,6 +372,16 @@ fn cut_and_changed_files_are_refused() {
         refusal(&path, &Limits::default()),
         "header: invalid: pixel type attribute value; expected an OpenEXR file that is complete"
     );
+    // A window that ends before it starts, along one axis and along the other.
+    let window = find(&good, b"dataWindow\0box2i\0") + 4;
+    for (start, found) in [(0, "from (9, 0) to (7, 7)"), (4, "from (0, 9) to (7, 7)")] {
+        let mut bytes = good.clone();
+        bytes[window + start..window + start + 4].copy_from_slice(&9_i32.to_le_bytes());
+        std::fs::write(&path, &bytes).unwrap();
+        let error = refusal(&path, &Limits::default());
+        assert!(error.starts_with(&format!("dataWindow: {found}")), "{error}");
+        assert!(error.ends_with("expected an end after its start"), "{error}");
+    }
     // A channel that is sampled every second cell.
     bytes[at] = 2;
     bytes[at + 8] = 2;

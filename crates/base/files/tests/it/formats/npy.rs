@@ -278,6 +278,14 @@ fn headers_that_are_broken_are_refused() {
     // A claim of 4 GiB costs nothing.
     let huge = read(b"\x93NUMPY\x02\x00\xff\xff\xff\xff").unwrap_err();
     assert_eq!(huge, "header: a length of 4294967295; expected at most 65536 bytes");
+    for (length, is_read) in [(65_536_u32, true), (65_537, false)] {
+        let mut bytes = b"\x93NUMPY\x02\x00".to_vec();
+        bytes.extend(length.to_le_bytes());
+        bytes.extend(dictionary("<f8", "False", "(1, 1)").as_bytes());
+        bytes.resize(12 + length as usize, b' ');
+        bytes.extend([0; 8]);
+        assert_eq!(read(&bytes).is_ok(), is_read, "{length}");
+    }
     for text in [
         "",
         "{",
@@ -388,6 +396,33 @@ fn numbers_that_do_not_fit_their_shape_are_refused() {
         refused(dictionary("<u8", "False", "(1,)"), &u64::MAX.to_le_bytes()),
         "number 0: 18446744073709551615; expected a whole number up to 2^53"
     );
+    // The last whole number before which a double holds each one, with either sign.
+    for (number, is_read) in [(1_i64 << 53, true), (-(1 << 53), true), ((1 << 53) + 1, false)] {
+        let bytes = file(&dictionary("<i8", "False", "(1,)"), &number.to_le_bytes());
+        assert_eq!(numbers(&bytes).is_ok(), is_read, "{number}");
+    }
+    for (dimensions, is_read) in [(64, true), (65, false)] {
+        let shape = format!("({})", "1,".repeat(dimensions));
+        let bytes = file(&dictionary("<f8", "False", &shape), &[0; 8]);
+        assert_eq!(numbers(&bytes).is_ok(), is_read, "{dimensions}");
+    }
+}
+
+/// NumPy's header is the smallest multiple of 64 bytes that holds the ten bytes before the dictionary, the dictionary and a line feed.
+#[test]
+fn a_header_is_no_longer_than_it_has_to_be() {
+    let folder = Folder::new();
+    let mut is_full = false;
+    for (dimensions, last) in (1..40).flat_map(|count| [1_u64, 10, 100].map(|last| (count, last))) {
+        let mut shape = vec![1; dimensions];
+        shape.push(last);
+        write_npy_numbers(folder.path(), &shape, &vec![0_u8; last as usize]).unwrap();
+        let bytes = std::fs::read(folder.path()).unwrap();
+        let end = bytes.iter().position(|byte| *byte == b'}').unwrap() + 1;
+        is_full |= (end + 1).is_multiple_of(64);
+        assert_eq!(bytes.len() - last as usize, (end + 1).next_multiple_of(64), "{shape:?}");
+    }
+    assert!(is_full, "one of the dictionaries leaves no room");
 }
 
 #[test]

@@ -68,6 +68,10 @@ fn damaged_png_is_refused() {
     let few = Limits { bytes: 8, ..Limits::default() };
     let error = png_from_bytes(&good, Path::new("d.png"), &few).unwrap_err().to_string();
     assert!(error.contains("size: 2 x 1 cells of 1 components"), "{error}");
+    // Two doubles are sixteen bytes.
+    let enough = Limits { bytes: 16, ..Limits::default() };
+    assert!(png_from_bytes(&good, Path::new("d.png"), &Limits { bytes: 15, ..enough }).is_err());
+    assert!(png_from_bytes(&good, Path::new("d.png"), &enough).is_ok());
 }
 
 fn tiff<C: colortype::ColorType>(images: &[&[C::Inner]], tags: &[(Tag, u16)]) -> Vec<u8>
@@ -85,6 +89,35 @@ where
         image.write_data(cells).unwrap();
     }
     file.into_inner()
+}
+
+/// One pixel, whose red, green and blue lie in a strip each.
+fn in_planes() -> Vec<u8> {
+    // Tag, type (3: two bytes, 4: four), number of values, and the value or its place: behind these ten tags.
+    let data = 8 + 2 + 12 * 10 + 4;
+    let tags: [[u32; 4]; 10] = [
+        [256, 3, 1, 1],
+        [257, 3, 1, 1],
+        [258, 3, 3, data],
+        [259, 3, 1, 1],
+        [262, 3, 1, 2],
+        [273, 4, 3, data + 6],
+        [277, 3, 1, 3],
+        [278, 3, 1, 1],
+        [279, 4, 3, data + 18],
+        [284, 3, 1, 2],
+    ];
+    let mut file = b"II*\0\x08\0\0\0\x0a\0".to_vec();
+    for [tag, kind, count, value] in tags {
+        file.extend([tag as u16, kind as u16].map(u16::to_le_bytes).as_flattened());
+        file.extend([count, value].map(u32::to_le_bytes).as_flattened());
+    }
+    file.extend([0; 4]);
+    file.extend([8_u16; 3].map(u16::to_le_bytes).as_flattened());
+    let strips = data + 30;
+    file.extend([strips, strips + 1, strips + 2, 1, 1, 1].map(u32::to_le_bytes).as_flattened());
+    file.extend([1, 2, 3]);
+    file
 }
 
 #[test]
@@ -115,6 +148,20 @@ fn tiff_that_could_be_misread_is_refused() {
     );
     let overview = tiff::<colortype::Gray16>(&[&[1], &[2]], &[(Tag::NewSubfileType, 1)]);
     assert_eq!(planes(read_tiff(&overview).unwrap()), [[1.0]]);
+    let mask = tiff::<colortype::Gray16>(&[&[1], &[2]], &[(Tag::NewSubfileType, 4)]);
+    assert_eq!(planes(read_tiff(&mask).unwrap()), [[1.0]]);
+    // A page of several is none of these.
+    let page = tiff::<colortype::Gray16>(&[&[1], &[2]], &[(Tag::NewSubfileType, 2)]);
+    assert!(read_tiff(&page).unwrap_err().contains("second image: a page of its own"));
+    let white = tiff::<colortype::Gray16>(&[&[1]], &[(Tag::PhotometricInterpretation, 0)]);
+    let expected = "d.tif: PhotometricInterpretation: 0, where 0 is white; expected 1, where 0 is black";
+    assert_eq!(read_tiff(&white).unwrap_err(), expected);
+    // Samples that lie in planes, one after the other; a single one does so however it is called.
+    let apart = in_planes();
+    let expected = "d.tif: PlanarConfiguration: 2; expected 1: the samples of a pixel side by side";
+    assert_eq!(read_tiff(&apart).unwrap_err(), expected);
+    let alone = tiff::<colortype::Gray8>(&[&[7]], &[(Tag::PlanarConfiguration, 2)]);
+    assert_eq!(planes(read_tiff(&alone).unwrap()), [[7.0]]);
     let turned = tiff::<colortype::Gray16>(&[&[1]], &[(Tag::Orientation, 3)]);
     let expected = "d.tif: Orientation: 3; expected 1: row 0 on top, column 0 at the left";
     assert_eq!(read_tiff(&turned).unwrap_err(), expected);

@@ -43,6 +43,19 @@ fn a_written_store_is_read_back() {
     assert_eq!((read[0].array.planes[0].real(1), read[1].array.planes[0].real(1)), (4_294_967_295.0, 1.0));
 }
 
+#[test]
+fn limits_hold_for_all_arrays_of_a_store_together() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = folder.path().join("maps.zarr");
+    let arrays = ["a", "b"].map(|name| array(name, &[3, 4], ArrayData::F64(vec![0.5; 12]))).to_vec();
+    write_zarr(&store, &[], &[("camera".to_string(), arrays)]).unwrap();
+    let read = |bytes: u64| read_zarr(&store, &Limits { bytes, ..Limits::default() });
+    // 96 bytes each, and what is before them in the form in which they are read.
+    assert_eq!(read(400).unwrap().len(), 2);
+    let error = read(150).unwrap_err().to_string();
+    assert!(error.contains("camera/b: shape: [3, 4] in chunks of [3, 4]; expected 1 to"), "{error}");
+}
+
 /// An array of 3 x 5 numbers of 16 bits, 0 to 14, in chunks of 2 x 2, in the byte order of the description.
 fn chunked(folder: &Path, change: impl Fn(String) -> String) {
     let array = folder.join("s.zarr/depth");
@@ -99,6 +112,9 @@ fn what_is_not_read_is_refused_by_name() {
     assert!(with("uint16", "complex64").contains("data_type: \"complex64\"; expected bool, an integer"));
     assert!(with("[2, 2]", "[2, 0]").contains("chunk_shape: [2, 0]"));
     assert!(with("[3, 5]", "[4294967296, 4294967296]").contains("shape: [4294967296, 4294967296]"));
+    // 2^66 numbers of a chunk.
+    let large = with("[2, 2]", "[8589934592, 8589934592]");
+    assert!(large.contains("shape: [3, 5] in chunks of [8589934592, 8589934592]; expected 1 to"), "{large}");
     assert!(with("[3, 5]", "[9, 5]").contains("chunk c/2/0: not there; expected a file for every chunk"));
     assert!(with("\"shape\"", "\"form\"").contains("zarr.json: missing field `shape`"));
     chunked(folder.path(), |document| document);
