@@ -1,6 +1,6 @@
 //! Point clouds of other programs: what is read, and what is refused with which words.
 
-use raypencil_mesh_io::{Cloud, CloudStorage, cloud_from_bytes};
+use raypencil_mesh_io::{Cloud, CloudStorage, PackedField, PackedKind, PackedPoints, cloud_from_bytes};
 
 fn read(bytes: &[u8]) -> Result<Cloud, String> {
     cloud_from_bytes(bytes, "c".as_ref(), |name| name != "unasked").map_err(|error| error.to_string())
@@ -199,4 +199,47 @@ fn decimal_numbers_beyond_their_type_are_refused() {
             assert!(!of(endless).expect("a word for it").column("y").expect("a field").values[0].is_finite());
         }
     }
+}
+
+/// Half of the last printed decimal, which an exponent moves.
+#[test]
+fn a_printed_number_may_be_off_by_half_of_its_last_decimal_wherever_its_point_is() {
+    let header = "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty double y\nproperty double z\nend_header\n";
+    // The last line may lack its end.
+    let cloud = read(format!("{header}1 2 3").as_bytes()).unwrap();
+    assert_eq!(cloud.len(), 1);
+    for (text, error) in
+        [("1.25e-3", 5e-6), ("1.25E-3", 5e-6), ("1e2", 50.0), ("1.5e2", 5.0), ("7", 0.5), ("7.", 0.5)]
+    {
+        let cloud = read(format!("{header}{text} 0 0\n").as_bytes()).unwrap();
+        assert_eq!(cloud.column("x").unwrap().error(0), error, "{text}");
+    }
+}
+
+#[test]
+fn rows_of_packed_points_may_have_bytes_behind_them() {
+    let real = |(name, offset): (&str, usize)| PackedField {
+        name: name.into(),
+        offset,
+        kind: PackedKind::Real,
+        size: 4,
+        count: 1,
+    };
+    let fields = [("x", 0), ("y", 4), ("z", 8)].map(real);
+    // Two points of 16 bytes in a row, and 8 bytes behind each row.
+    let point = |x: f32| [[x, 10.0 + x, 20.0 + x].map(f32::to_le_bytes).as_flattened(), &[0xff; 4]].concat();
+    let row = |x: f32| [point(x), point(x + 1.0), vec![0xff; 8]].concat();
+    let data = [row(0.0), row(2.0)].concat();
+    let points = PackedPoints {
+        fields: &fields,
+        size: [2, 2],
+        point_step: 16,
+        row_step: 40,
+        is_big_endian: false,
+        data: &data,
+    };
+    let cloud = points.cloud(|_| true).unwrap();
+    assert_eq!((cloud.width, cloud.height), (2, 2));
+    let of = |name: &str| cloud.column(name).unwrap().values.clone();
+    assert_eq!((of("x"), of("z")), (vec![0.0, 1.0, 2.0, 3.0], vec![20.0, 21.0, 22.0, 23.0]));
 }

@@ -210,3 +210,81 @@ fn spikes_are_counted_and_the_worst_is_placed() {
     (heights[77], heights[300], heights[301]) = (-900.0, 1100.0, 105.0);
     assert_eq!(posts(&heights).spikes().map(|spikes| spikes.count), Some(2));
 }
+
+#[test]
+fn of_equals_the_lowest_and_the_first_is_told() {
+    assert_eq!(most_frequent(&[1.0, 1.0, 2.0, 3.0, 3.0]), Some((1.0, 2)));
+    // As many heights below as above: the constant is below those that are above.
+    let found = Constant::new(0.0, 3, &[-5.0, 7.0]);
+    assert_eq!((found.is_below, found.gap, found.span), (true, 7.0, 0.0));
+    let mut heights = ground();
+    let [low, high] = posts(&heights).range().unwrap();
+    (heights[77], heights[300]) = (high + 500.0, high + 500.0);
+    let spikes = posts(&heights).spikes().unwrap();
+    assert_eq!((spikes.count, spikes.worst), (2, 77));
+    assert!((spikes.stands_out - 500.0).abs() < high - low, "{spikes:?}");
+}
+
+#[test]
+fn a_step_that_is_no_ground_is_so_in_any_unit() {
+    // 101 x 2 posts 10 m apart, in feet: the model is 1000 m long, so that 500 m are the smallest step.
+    let metre = 1.0 / 0.3048;
+    let heights = vec![0.0; 202];
+    let spacing = DVec2::splat(10.0 * metre);
+    let in_feet = Posts { heights: &heights, columns: 101, spacing, metre };
+    assert_eq!(in_feet.smallest_leap(), 500.0 * metre);
+    // Two levels, 300 m apart, are a terrace: in feet too, of which they are 984. The model is 40 m long.
+    let step = 300.0 * metre;
+    let levels: Vec<f64> = (0..25).map(|at| if at < 15 { 0.0 } else { step }).collect();
+    let spacing = DVec2::splat(7.0 * metre);
+    assert_eq!(Posts { heights: &levels, columns: 5, spacing, metre }.constant(), None);
+    let levels: Vec<f64> = levels.iter().map(|height| 2.0 * height).collect();
+    let found = Posts { heights: &levels, columns: 5, spacing, metre }.constant().unwrap();
+    assert_eq!((found.height, found.count), (2.0 * step, 10));
+}
+
+#[test]
+fn shares_and_counts_hold_at_their_limits() {
+    // Two rows 1 m apart: a step of some 11 m is no ground.
+    let of = |heights: &[f64]| {
+        Posts { heights, columns: heights.len() / 2, spacing: DVec2::ONE, metre: 1.0 }.constant()
+    };
+    // 18 of 20 posts at one height are a level, and two posts 100 m above them another one: a terrace.
+    let mut terrace = vec![0.0; 18];
+    terrace.extend([0.5, 1.0, 100.0, 100.0]);
+    assert_eq!(of(&terrace), None);
+    // 17 of 20 are none.
+    terrace[17] = 1.5;
+    assert_eq!(of(&terrace).map(|found| (found.height, found.count)), Some((100.0, 2)));
+    // As many posts near a height as three times its own are heights like it; one less are not.
+    let mut few: Vec<f64> = (0..20).map(|at| f64::from(at) / 10.0).collect();
+    few.extend([100.0, 100.0, 103.0, 104.0, 105.0, 106.0]);
+    assert_eq!(of(&few), None);
+    few[25] = 20.0;
+    assert_eq!(of(&few).map(|found| (found.height, found.count)), Some((100.0, 2)));
+}
+
+#[test]
+fn mixtures_reach_three_posts_from_their_constant() {
+    let near = |columns: usize, at: usize, constant: usize| {
+        let mut heights = vec![10.0; columns * 2];
+        heights[at] = -7.0;
+        heights[constant] = -9.0;
+        let found = Posts { heights: &heights, columns, spacing: DVec2::ONE, metre: 1.0 };
+        found.others_are_near(-9.0, |height| height < 0.0)
+    };
+    for (at, constant, is_near) in [(0, 3, true), (0, 4, false), (5, 2, true), (5, 1, false)] {
+        assert_eq!(near(8, at, constant), is_near, "{at} {constant}");
+    }
+    // Along the columns: 2 columns would be 2 posts wide, so rows are tried by a single wide row below another.
+    let down = |row: usize, constant: usize| {
+        let mut heights = vec![10.0; 2 * 8];
+        heights[2 * row] = -7.0;
+        heights[2 * constant] = -9.0;
+        let found = Posts { heights: &heights, columns: 2, spacing: DVec2::ONE, metre: 1.0 };
+        found.others_are_near(-9.0, |height| height < 0.0)
+    };
+    for (row, constant, is_near) in [(0, 3, true), (0, 4, false), (7, 4, true), (7, 3, false)] {
+        assert_eq!(down(row, constant), is_near, "{row} {constant}");
+    }
+}

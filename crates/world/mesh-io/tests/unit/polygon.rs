@@ -302,6 +302,10 @@ fn a_corner_off_the_plane_is_told_beyond_rounding() {
     assert_eq!(off_its_plane(&single), None);
     // What has no plane is not bent.
     assert_eq!(off_its_plane(&[[1.0; 3]; 4]), None);
+    // A square of a millimetre that was printed with six decimals, one of which is off.
+    let small = |off: f64| [[0.0, 0.0, 0.0], [1e-3, 0.0, 0.0], [1e-3, 1e-3, off], [0.0, 1e-3, 0.0]];
+    assert_eq!(off_its_plane(&small(1e-6)), None);
+    assert!(off_its_plane(&small(2e-5)).is_some());
 }
 
 #[test]

@@ -132,7 +132,7 @@ fn words_mean_one_unit_or_none() {
     ] {
         assert_eq!(LengthUnit::parse(word).map(|unit| unit.code), Ok(Some(code)), "{word}");
     }
-    for word in ["", "feet", "degree", "9102", "-ft", "70000", "EPSG:", "metre per second"] {
+    for word in ["", "feet", "degree", "9102", "-ft", " -ft", "- ft", "70000", "EPSG:", "metre per second"] {
         let expected = LengthUnit::parse(word).unwrap_err();
         assert!(expected.starts_with("expected m, km"), "{word}: {expected}");
     }

@@ -96,8 +96,8 @@ fn paths_without_a_tiff_are_refused() {
 
 #[test]
 fn a_mask_is_refused() {
-    // A second directory, marked as a mask, after the end of the first.
-    for (kind, is_refused) in [(4_u16, true), (1, false)] {
+    // A second directory, marked as a mask, of an overview too, after the end of the first.
+    for (kind, is_refused) in [(4_u16, true), (1, false), (5, true), (2, false)] {
         let mut bytes = Tiff::plain().bytes();
         let at = bytes.len() as u32;
         let pointer = bytes.len() - 4;

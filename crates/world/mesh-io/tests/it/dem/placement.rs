@@ -189,3 +189,19 @@ fn posts_that_single_precision_cannot_hold_apart() {
         &["6 of 12 posts not known", "a cell with four"],
     );
 }
+
+/// Posts that single precision cannot hold apart along one axis, although it can along the other.
+#[test]
+fn the_nearer_of_the_posts_have_to_be_apart() {
+    for (spacing, is_mesh) in [([2.0, 1e-7], false), ([1e-7, 2.0], false), ([2.0, 1e-3], true)] {
+        let tiff = Tiff::plain().tag(33550, Double(vec![spacing[0], spacing[1], 0.0]));
+        let mesh = read(&tiff, None).unwrap().mesh(None, 0.25);
+        assert_eq!(mesh.is_ok(), is_mesh, "{spacing:?}");
+        if let Err(error) = mesh {
+            assert_names(
+                &error.to_string(),
+                &["spacing: posts 0.0000001 m apart", "offsets in single precision"],
+            );
+        }
+    }
+}

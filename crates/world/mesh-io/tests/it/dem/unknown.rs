@@ -73,6 +73,9 @@ fn samples_that_are_no_heights_are_named_as_the_file_writes_them() {
                 &format!("`--nodata {written}`"),
             ],
         );
+        // A pixel is that of the file, whatever window is read.
+        let of_window = refusal(&tiff, Some([13.0, -10.0, 8.0, 10.0]));
+        assert_names(&of_window, &[&format!("dem.tif: pixel (5, 5): {written}")]);
         assert_eq!(read_with(&tiff, &options(written)).unwrap().unknown, 16, "{written}");
         assert_names(&read_with(&tiff, &options("none")).unwrap_err().to_string(), &["pixel (5, 5)"]);
     }

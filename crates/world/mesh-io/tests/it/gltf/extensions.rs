@@ -113,6 +113,10 @@ fn sparse_elements_replace_those_below_them() {
         "accessor 0: sparse index 1 is 1; expected indices below 4 that increase",
     );
     exactly_refused(
+        file(5121, &[1, 1], true),
+        "accessor 0: sparse index 1 is 1; expected indices below 4 that increase",
+    );
+    exactly_refused(
         file(5121, &[1, 4], true),
         "accessor 0: sparse index 1 is 4; expected indices below 4 that increase",
     );

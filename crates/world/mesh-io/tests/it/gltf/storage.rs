@@ -98,6 +98,16 @@ fn interleaved_vertices_and_shared_ones() {
     assert_eq!(mesh.faces(), [[1, 2, 0], [2, 3, 0], [1, 2, 0], [2, 3, 0]]);
     assert_eq!(mesh.vertices().len(), 4);
     assert_eq!(mesh.vertices()[2], [1., 1., 0.]);
+    // The longest stride of the specification. (glTF 2.0, section 5.11.4)
+    for (stride, is_read) in [(252, true), (256, false)] {
+        let bytes: Vec<u8> =
+            SQUARE.chunks(3).flat_map(|v| [reals(v), vec![0xaa; stride - 12]].concat()).collect();
+        json["bufferViews"][0]["byteStride"] = json!(stride);
+        json["bufferViews"][0]["byteLength"] = json!(bytes.len());
+        json["buffers"][0]["byteLength"] = json!(4 + bytes.len());
+        let found = parse(&json, &[vec![0; 4], bytes].concat());
+        assert_eq!(found.map(|mesh| mesh.vertices()[2]).ok(), is_read.then_some([1., 1., 0.]), "{stride}");
+    }
 }
 
 #[test]
@@ -299,4 +309,22 @@ fn wrong_numbers_name_the_accessor_and_the_index() {
     );
     let wide = changed(|json| json["nodes"][0]["scale"] = json!([1e8, 1, 1]));
     assert!(wide.unwrap_err().contains("within 1e7 m of the scene origin"));
+}
+
+#[test]
+fn numbers_are_aligned_in_their_buffer_and_not_in_their_view() {
+    // Two bytes before the view, and two in it before the numbers, make four: positions lie at a multiple of their size.
+    let (mut json, bin) = square();
+    json["buffers"][0]["byteLength"] = json!(bin.len() + 4);
+    json["bufferViews"][0]["byteOffset"] = json!(2);
+    json["bufferViews"][0]["byteLength"] = json!(50);
+    json["bufferViews"][1]["byteOffset"] = json!(52);
+    json["accessors"][0]["byteOffset"] = json!(2);
+    let shifted = [vec![0; 4], bin].concat();
+    assert_eq!(parse(&json, &shifted).unwrap().faces(), [[0, 1, 2], [0, 2, 3]]);
+    // A view from byte 2 on, and its numbers from its first byte.
+    json["accessors"][0]["byteOffset"] = json!(0);
+    let message =
+        "accessor 0: numbers of 4 bytes from byte 2 of their buffer, 12 apart; expected multiples of 4";
+    refused(parse(&json, &shifted), message);
 }

@@ -35,6 +35,19 @@ fn faces_keep_their_order_and_look_up() {
 }
 
 #[test]
+fn a_quaternion_of_few_digits_turns_and_does_not_scale() {
+    for (square_length, is_read) in [(0.901, true), (1.099, true), (0.899, false), (1.101, false)] {
+        let part = f64::sqrt(square_length / 2.0);
+        let found = changed(|json| json["nodes"][0]["rotation"] = json!([part, 0, 0, part]));
+        assert_eq!(found.is_ok(), is_read, "{square_length}: {found:?}");
+        // A quarter turn about x of a square of side 1, whatever the length.
+        let Ok(mesh) = found else { continue };
+        let [low, high] = mesh.bounds().unwrap();
+        assert!(((high - low).max_element() - 1.0).abs() < 1e-6, "{square_length}");
+    }
+}
+
+#[test]
 fn translation_rotation_and_scale_apply_from_the_right() {
     // T R S: (1, 0, 0) is scaled by 2, rotated by 90 degrees about y (x -> -z), moved by (10, 20, 30):
     // (10, 20, 28), which is (10, -28, 20) globally. Halves under the root: the quaternion in f32 is a unit

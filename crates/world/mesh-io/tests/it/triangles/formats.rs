@@ -26,7 +26,15 @@ fn a_pair_of_arrays_gives_them_too() {
         fs::write(folder.path().join(format!("{prefix}vertices.npy")), npy_vertices()).unwrap();
         fs::write(folder.path().join(format!("{prefix}faces.npy")), npy_faces()).unwrap();
     }
-    for path in ["", "rock", "rock_vertices.npy", "anyfaces.npy", "vertices.npy"] {
+    for (path, sign) in [("dot", "."), ("low", "_"), ("dash", "-")] {
+        let file = |end: &str| folder.path().join(format!("{path}{sign}{end}.npy"));
+        fs::write(file("vertices"), npy_vertices()).unwrap();
+        fs::write(file("faces"), npy_faces()).unwrap();
+    }
+    // Each file has its own digest, that of the vertices first.
+    let own = [npy_vertices(), npy_faces()].map(|bytes| raypencil_files::sha256(&bytes));
+    assert_eq!(read_triangles(&folder.path().join("dash")).unwrap().digests, own);
+    for path in ["", "rock", "rock_vertices.npy", "anyfaces.npy", "vertices.npy", "dot", "low", "dash"] {
         let file = read_triangles(&folder.path().join(path)).unwrap();
         assert_eq!(bits(&file.triangles), bits(&expected), "{path}");
         assert_eq!((file.triangles, file.polygons, file.digests.len()), (expected.clone(), None, 2));
@@ -126,9 +134,15 @@ fn stl_with_attributes_or_filled_up_is_read() {
     // A colour in the place of the count, as most programs write it; attributes between the faces.
     assert_eq!(faces(&file(2, &[&binary_face(0x7fff), &binary_face(0x7fff)])), Ok(2));
     assert_eq!(faces(&file(2, &[&binary_face(4), b"abcd", &binary_face(3), b"efg"])), Ok(2));
+    // Their count has two bytes: here it is more than the first of them holds.
+    assert_eq!(faces(&file(2, &[&binary_face(300), &[b'a'; 300], &binary_face(0)])), Ok(2));
     // Less than a face behind the last one, and bytes 0 up to the end of a block.
     assert_eq!(faces(&file(1, &[&binary_face(0), b"\r\n"])), Ok(1));
     assert_eq!(faces(&file(1, &[&binary_face(0), &[0; 378]])), Ok(1));
+    // A file of nothing but zeros behind its head is no empty mesh: its number of faces may be what is missing.
+    assert!(
+        faces(&file(0, &[&[0; 378]])).unwrap_err().contains("byte 80: 0 faces, and 378 bytes behind them")
+    );
     // The bytes of a second face: which of both numbers is right?
     assert_eq!(
         faces(&file(1, &[&binary_face(0), &binary_face(0)])).unwrap_err(),
@@ -196,9 +210,17 @@ fn polygons_are_told_that_cross_themselves_or_are_not_planar() {
     // The corners of a square, one of them 0.2 up, are 0.05 off the plane between them, whose normal is tilted by 0.14.
     assert!((0.049..0.05).contains(&bent.distance), "{}", bent.distance);
     assert_eq!(found.words(), "5 polygons of more than three corners, 1 of them not convex and cut truly");
+    // Of equals the first is told, of those that cross themselves, too.
+    let twice = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 1 0.1\nf 1 2 5 4\nf 1 3 2 4\nf 1 2 5 4\nf 1 3 2 4\n";
+    let found = facts("twice.obj", twice);
+    let (crossing, bent) = (found.crossing.unwrap(), found.bent.unwrap());
+    assert_eq!((crossing.count, crossing.first.to_string()), (2, "polygon 1 (line 7)".into()));
+    assert_eq!((bent.count, bent.worst.to_string()), (2, "polygon 0 (line 6)".into()));
     let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
                   element face 2\nproperty list uchar int vertex_indices\nend_header\n";
-    let found = facts("a.ply", &format!("{header}0 0 0\n1 1 0\n1 0 0\n0 1 0\n4 0 2 1 3\n4 0 1 2 3\n"));
+    // Lines without a number are no rows.
+    let rows = "0 0 0\n\n1 1 0\n \t\n1 0 0\n0 1 0\n4 0 2 1 3\n4 0 1 2 3\n";
+    let found = facts("a.ply", &format!("{header}{rows}"));
     assert_eq!(found.crossing.unwrap().first.to_string(), "polygon 1");
     assert_eq!((found.count, found.cut, found.bent), (2, 0, None));
     assert_eq!(facts("b.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n"), Default::default());
