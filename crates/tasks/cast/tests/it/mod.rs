@@ -4,6 +4,7 @@ mod bags;
 mod bounds;
 mod cloud;
 mod cloud_trial;
+mod clouds_at_limits;
 mod clouds_of_others;
 mod clouds_of_returns;
 mod clouds_of_sensors;
