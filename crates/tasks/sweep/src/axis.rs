@@ -214,7 +214,9 @@ fn range(text: &str, room: usize) -> Result<Option<Vec<String>>, String> {
     }
     let decimals = |text: &str| text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
     if [first, step].iter().any(|text| text.contains(['e', 'E'])) {
-        return Ok(Some((0..=count as u64).map(|k| format!("{:e}", low + k as f64 * by)).collect()));
+        // Fifteen digits, which every double holds: sums of decimals have others behind them.
+        let value = |k: u64| format!("{:.14e}", low + k as f64 * by).parse().unwrap_or(low);
+        return Ok(Some((0..=count as u64).map(|k| format!("{:e}", value(k))).collect()));
     }
     let decimals = decimals(first).max(decimals(step));
     if decimals > MAX_DECIMALS {
@@ -238,6 +240,10 @@ mod tests {
         assert_eq!(values("a=1:2:0.25, 7"), ["1.00", "1.25", "1.50", "1.75", "2.00", "7"]);
         assert_eq!(values("a=5:5:1"), ["5"]);
         assert_eq!(values("a=1e-3:3e-3:1e-3"), ["1e-3", "2e-3", "3e-3"]);
+        // Where the first number has more decimals than the step; and sums that no double has, with an exponent.
+        assert_eq!(values("a=0.05:2.05:1"), ["0.05", "1.05", "2.05"]);
+        assert_eq!(values("a=1e-1:5e-1:1e-1"), ["1e-1", "2e-1", "3e-1", "4e-1", "5e-1"]);
+        assert_eq!(values("a=1e3:1.2e3:1e2"), ["1e3", "1.1e3", "1.2e3"]);
         // A text of digits is no number.
         assert_eq!(values("a=30,\"30\""), ["30", "\"30\""]);
         // No numbers: a text with colons.
@@ -314,6 +320,9 @@ mod tests {
         let list = Axis::read_list(&path).unwrap();
         assert_eq!(list.keys, ["camera.pitch_down_deg", "vehicle.position_m"]);
         assert_eq!(list.rows, [["20", "[1, 2]"], ["25", "[0,0]"]]);
+        let most = (0..1000).map(|k| format!("k{k}")).collect::<Vec<_>>().join(",");
+        std::fs::write(&path, format!("{most}\n{}\n", ["1"; 1000].join(","))).unwrap();
+        assert_eq!(Axis::read_list(&path).unwrap().keys.len(), 1000);
         let many = (0..150_000).map(|k| format!("k{k}")).collect::<Vec<_>>().join(",") + "\n";
         for (text, expected) in [
             ("a,b\n1\n", "runs.csv"),
