@@ -54,10 +54,16 @@ pub fn sweep_document(
     let Sweep { scene, task, renderers, .. } = &finished.sweep;
     let refused: Vec<(u64, &str)> = finished.refused().collect();
     let runs = counted(table.runs() as u64, "run", "runs");
-    let headline = match (finished.passes(), refused.len()) {
-        (true, _) => format!("{runs}, all made."),
-        (false, 0) => format!("{runs}; in some of them the renderers disagree."),
-        (false, some) => format!("{some} of {runs} could not be made."),
+    let is_other = |outcome: &&Outcome| matches!(outcome, Outcome::Results(_)) && !outcome.passes();
+    let disagree = finished.outcomes.iter().filter(is_other).count();
+    let (headline, verdict) = match (refused.len(), disagree) {
+        (0, 0) => (format!("{runs}, all made."), "made"),
+        (0, some) => (format!("{runs}; in {some} of them the renderers disagree."), "defects"),
+        (some, 0) => (format!("{some} of {runs} could not be made."), "not_all_made"),
+        (some, others) => (
+            format!("{some} of {runs} could not be made; in {others} of the others the renderers disagree."),
+            "defects",
+        ),
     };
     let mut told: Vec<String> = refused
         .iter()
@@ -111,7 +117,7 @@ pub fn sweep_document(
         ],
         suites: vec![suite(finished)],
         format: FORMAT,
-        verdict: if finished.passes() { "made" } else { "not_all_made" },
+        verdict,
         data: data(finished, table, written),
         explorer: String::new(),
     }

@@ -1,3 +1,4 @@
 //! The tests of this crate by its public items, one program together with its unit tests.
 
+mod finished;
 mod sweep;
