@@ -293,12 +293,7 @@ fn hardest(merged: &Merged) -> Grid {
         std::cmp::Reverse([wrong(sums), of(sums, Class::Rounding), of(sums, Class::Tie)])
     });
     for (terrain, sums) in terrains.into_iter().take(MAX_LISTED_TERRAINS) {
-        let replay = format!(
-            "raypencil campaign replay --seed {} --terrain {} --part {} -o DIR",
-            merged.campaign.seed,
-            terrain.terrain,
-            hardest_part(terrain).word()
-        );
+        let replay = merged.replay_command(terrain.terrain, hardest_part(terrain));
         let ratios = terrain
             .parts
             .iter()

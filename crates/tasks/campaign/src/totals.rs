@@ -113,18 +113,20 @@ impl Merged {
             (Some(scenes), PartName::Own | PartName::Paper) => {
                 format!("raypencil probe {} {cell}", scenes.arguments(terrain))
             }
-            (Some(_), _) => format!(
-                "raypencil campaign replay --scenes SCENES --seed {} --terrain {terrain} --part {} -o DIR, then raypencil \
-                 probe DIR/scene.toml {cell}",
-                self.campaign.seed,
-                part.word()
-            ),
-            (None, _) => format!(
-                "raypencil campaign replay --seed {} --terrain {terrain} --part {} -o DIR, then raypencil probe DIR/scene.toml {cell}",
-                self.campaign.seed,
-                part.word()
-            ),
+            _ => {
+                format!("{}, then raypencil probe DIR/scene.toml {cell}", self.replay_command(terrain, part))
+            }
         }
+    }
+
+    /// The command that writes a scene again. Without one's own scenes and their rig it would be another, random one.
+    pub(crate) fn replay_command(&self, terrain: u64, part: PartName) -> String {
+        let scenes = self.campaign.scenes.as_ref().map_or(String::new(), |own| own.options() + " ");
+        let seed = self.campaign.seed;
+        format!(
+            "raypencil campaign replay {scenes}--seed {seed} --terrain {terrain} --part {} -o DIR",
+            part.word()
+        )
     }
 
     /// Scenes for which the program under test gave no answer, with the reason.
