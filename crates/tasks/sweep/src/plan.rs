@@ -234,6 +234,17 @@ mod tests {
     use super::*;
 
     #[test]
+    fn runs_of_one_ground_follow_each_other() {
+        let order = |axes: &[&str]| {
+            let axes = axes.iter().map(|axis| Axis::parse(axis).unwrap()).collect();
+            let sweep = Sweep::new("pyramids", axes, Task::Render, vec!["tracer".into()], false).unwrap();
+            sweep.order(Part::WHOLE)
+        };
+        assert_eq!(order(&["camera.pitch_down_deg=10,20", "terrain.generate.seed=1,2"]), [0, 2, 1, 3]);
+        assert_eq!(order(&["camera.pitch_down_deg=10,20", "terrains.a=1,2"]), [0, 1, 2, 3]);
+    }
+
+    #[test]
     fn whatever_decides_the_results_of_a_run_is_in_its_identity() {
         let axis = |text: &str| Axis::parse(text).unwrap();
         let plan = || Sweep {
@@ -265,6 +276,9 @@ mod tests {
         identities.sort_unstable();
         identities.dedup();
         assert_eq!(identities.len(), others.len() + 1);
+        // A key that a list leaves to the scene is none.
+        let list = Axis { keys: vec!["a".into(), "d".into()], rows: vec![vec!["1".into(), String::new()]] };
+        assert_eq!(Sweep { axes: vec![list, axis("b=3")], ..plan() }.identity(0), own);
         // The other values, their order and the scene's name change nothing.
         for same in [
             Sweep { axes: vec![axis("a=1,5,7"), axis("b=3,4")], ..plan() },

@@ -242,6 +242,27 @@ mod tests {
     }
 
     #[test]
+    fn what_a_run_may_just_give_is_taken() {
+        let most: Vec<(String, Value)> = (0..MAX_RESULTS).map(|k| (format!("k{k}"), json!(k))).collect();
+        for outcome in [
+            Outcome::Results(most),
+            results(&[(&"a".repeat(MAX_NAME_CHARS), json!(1))]),
+            // Characters, of two bytes each.
+            results(&[("goal", json!("\u{e9}".repeat(MAX_TEXT_CHARS)))]),
+            Outcome::Refused("\u{e9}".repeat(MAX_TEXT_CHARS)),
+            results(&[("a_share", json!(0.0)), ("b_share", json!(1.0)), ("c_share", json!(1))]),
+        ] {
+            assert_eq!(read_back(&outcome).as_ref(), Some(&outcome));
+        }
+        // Each count is one by the end of its name, too.
+        for name in ["camera.hits", "beam-0.visible", "beam-0.lit_pixels", "judged", "not_compared"] {
+            for value in [json!(-1), json!(0.5)] {
+                assert_eq!(read_back(&results(&[(name, value)])), None, "{name}");
+            }
+        }
+    }
+
+    #[test]
     fn a_record_of_another_program_or_of_other_bytes_is_not_that_of_the_run() {
         let folder = tempfile::tempdir().unwrap();
         let folder = folder.path();
@@ -270,6 +291,13 @@ mod tests {
         assert!(!is_made(&sweep, &|record| record.inputs.clear()));
         assert!(!is_made(&sweep, &|record| record.left.push(file("maps/000000/camera.exr"))));
         assert!(!is_made(&sweep, &|record| record.outcome = Outcome::refused("no")));
+        // A map that is there, and lies where run 1 has its own.
+        let maps = folder.join("maps/000001");
+        std::fs::create_dir_all(&maps).unwrap();
+        std::fs::write(maps.join("camera.exr"), "").unwrap();
+        let (_, sha256) = file_sha256_hex(&maps.join("camera.exr")).unwrap();
+        let of_another = InputFile { name: "maps/000001/camera.exr".into(), sha256 };
+        assert!(!is_made(&sweep, &|record| record.left.push(of_another.clone())));
         // Whoever renders leaves maps.
         let render = Sweep { task: Task::Render, ..sweep };
         assert!(!is_made(&render, &|_| {}));

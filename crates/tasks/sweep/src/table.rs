@@ -264,10 +264,13 @@ mod tests {
 
     #[test]
     fn what_a_spreadsheet_would_compute_is_a_text_in_csv() {
-        let cells = ["=cmd|' /C calc'!A0", "@SUM(1)", "+x", "-3", "-1e5", "+7", "a=b", ""];
+        let cells = ["=cmd|' /C calc'!A0", "@SUM(1)", "+x", "-3", "-1e5", "+7", "a=b", "", "\t=1", "\r=1"];
         let texts = cells.iter().map(|text| Some(text.to_string())).collect();
         let column = Column { name: "a".into(), cells: Cells::Texts(texts) };
         let written: Vec<String> = (0..cells.len()).map(|run| column.csv(run)).collect();
-        assert_eq!(written, ["'=cmd|' /C calc'!A0", "'@SUM(1)", "'+x", "-3", "-1e5", "+7", "a=b", ""]);
+        assert_eq!(
+            written,
+            ["'=cmd|' /C calc'!A0", "'@SUM(1)", "'+x", "-3", "-1e5", "+7", "a=b", "", "'\t=1", "'\r=1"]
+        );
     }
 }

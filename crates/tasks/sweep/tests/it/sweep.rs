@@ -511,3 +511,38 @@ fn plans_that_are_none_are_refused() {
     fs::write(folder.join("sweep.json"), plan).unwrap();
     assert!(read_plan(&folder).unwrap_err().to_string().contains("a value for each key"));
 }
+
+#[test]
+fn a_run_that_one_folder_has_and_another_refused_has_its_results() {
+    let house = House::new();
+    let sweep = house.sweep(Task::Render, &["terrain.file=g.obj", "camera.pitch_down_deg=10,20"]);
+    let (before, after) = (house.folder("before"), house.folder("after"));
+    made(&sweep, Part::WHOLE, &before);
+    fs::write(house.folder("g.obj"), "v -50 -50 0\nv 50 -50 0\nv 0 50 0\nf 1 2 3\n").unwrap();
+    made(&sweep, Part::WHOLE, &after);
+    let [refused, joined] =
+        [vec![before.clone()], vec![before.clone(), after]].map(|folders| finish(&sweep, &folders));
+    assert_eq!(refused.unwrap().refused().count(), 2);
+    assert_eq!(joined.unwrap().refused().count(), 0);
+    // One folder by two names.
+    let again = house.folder("after/../before");
+    let twice = finish(&sweep, &[before, again]).unwrap_err().to_string();
+    assert!(twice.contains("is given twice; expected each folder once"), "{twice}");
+}
+
+#[test]
+fn each_value_is_tried_in_the_first_run_that_has_it() {
+    let house = House::new();
+    let first_wrong = |axes: &[&str]| match house.sweep(Task::Render, axes).check_values() {
+        Ok(()) => None,
+        Err(SweepError::Value { run, given, .. }) => Some((run, given)),
+        Err(other) => panic!("{other}"),
+    };
+    let fine = ["camera.pitch_down_deg=10,20", "beam.0.thickness_mm=2,4,8"];
+    assert_eq!(first_wrong(&fine), None);
+    let wrong = |run: u64, given: &str| Some((run, given.to_string()));
+    assert_eq!(first_wrong(&["beam.0.thickness_mm=-8,4"]), wrong(0, "beam.0.thickness_mm=-8"));
+    assert_eq!(first_wrong(&[fine[0], "beam.0.thickness_mm=2,4,-8"]), wrong(2, "beam.0.thickness_mm=-8"));
+    // Run 3 is the first with the second value of the first axis, before three of the second.
+    assert_eq!(first_wrong(&["camera.width_px=48,-1", fine[1]]), wrong(3, "camera.width_px=-1"));
+}
