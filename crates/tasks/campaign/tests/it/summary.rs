@@ -229,6 +229,38 @@ fn the_page_counts_lists_and_links() {
 }
 
 #[test]
+fn the_hardest_terrain_is_that_of_the_most_wrong_then_rounded_then_tied_rays() {
+    let mut merged = made_up([1000, 0, 0, 0, 0, 0], Vec::new());
+    // Classes in their order: agree, tie, rounding, approximation, undecided, defect.
+    merged.terrains[0].parts[0].by_class = [948, 50, 2, 0, 0, 0];
+    merged.terrains[1].parts[0].by_class = [988, 3, 9, 0, 0, 0];
+    let order = |merged: &Merged| {
+        let page = page(merged, &[]);
+        let at = |terrain: u64| page.find(&format!("<th scope=\"row\">{terrain}</th>")).expect("a row");
+        at(0) < at(1)
+    };
+    assert!(!order(&merged));
+    merged.terrains[1].parts[0].by_class = [995, 3, 2, 0, 0, 0];
+    assert!(order(&merged));
+    // The worst of a terrain, of which one value is no number.
+    merged.terrains[1].parts[2].quantities[0].worst_ratio.as_mut().unwrap().value = None;
+    assert!(page(&merged, &[]).contains("<td>infinite</td>"), "{}", page(&merged, &[]));
+}
+
+#[test]
+fn the_least_and_the_most_faces_are_those_of_any_terrain() {
+    let mut merged = made_up([1000, 0, 0, 0, 0, 0], Vec::new());
+    merged.terrains.push(TerrainRecord { terrain: 2, ..merged.terrains[0].clone() });
+    let faces = |merged: &Merged| -> Value {
+        serde_json::from_str::<Value>(&campaign_json(merged)).unwrap()["faces"].clone()
+    };
+    (merged.terrains[0].faces, merged.terrains[1].faces, merged.terrains[2].faces) = (50, 7, 60);
+    assert_eq!(faces(&merged), serde_json::json!({ "least": 7, "most": 60, "total": 117 }));
+    (merged.terrains[0].faces, merged.terrains[1].faces, merged.terrains[2].faces) = (50, 70, 60);
+    assert_eq!(faces(&merged), serde_json::json!({ "least": 50, "most": 70, "total": 180 }));
+}
+
+#[test]
 fn a_page_without_defects_or_hits_says_so() {
     let fine = page(&made_up([990, 6, 4, 0, 0, 0], Vec::new()), &[]);
     assert!(
@@ -298,6 +330,22 @@ fn the_same_mistake_of_many_scenes_is_one_reason() {
     }
     let json: Value = serde_json::from_str(&campaign_json(&merged)).unwrap();
     assert_eq!(json["reasons"][0]["numbers_differ"], true);
+    // Also where the last scene has the numbers of the first again.
+    let mut again = merged.clone();
+    again.terrains[1].parts[3].reasons = vec![reason("scaled", "lengths are times 2", 4)];
+    let of_again: Value = serde_json::from_str(&campaign_json(&again)).unwrap();
+    assert_eq!(
+        [&of_again["reasons"][0]["numbers_differ"], &of_again["reasons"][0]["scenes"]],
+        [&Value::from(true), &Value::from(3)]
+    );
+    // A scene whose wrong rays have no reason counts among those with wrong rays; of equals the one that explains more is told first.
+    let mut few = merged.clone();
+    few.terrains[0].parts[0].reasons = vec![reason("zz", "z", 1), reason("aa", "a", 2)];
+    few.terrains[1].parts[2].reasons = vec![reason("zz", "z", 1)];
+    few.terrains[1].parts[3].reasons.clear();
+    let of_few: Value = serde_json::from_str(&campaign_json(&few)).unwrap();
+    let names: Vec<&Value> = (0..2).map(|at| &of_few["reasons"][at]["mistakes"][0]).collect();
+    assert_eq!(names, ["zz", "aa"], "most scenes first, whatever they explain");
     assert_eq!([&json["reasons"][1]["scenes"], &json["reasons"][1]["explained"]], [1, 8]);
     let schema = include_str!("../../../../../docs/formats/campaign.schema.json");
     assert_eq!(schema_faults(&serde_json::from_str(schema).unwrap(), &json), [""; 0]);

@@ -70,3 +70,34 @@ fn a_program_that_ends_badly_fails_with_its_last_words() {
     let why = failed.failed.expect("a reason");
     assert!(why.contains('3') && why.ends_with(": the end"), "{why}");
 }
+
+#[test]
+fn the_last_words_are_those_of_the_last_line_that_has_some() {
+    let command = "printf 'first\\n  why  \\n   \\n\\n' >&2; : {pack} {out}; exit 3";
+    let campaign = Campaign::new(5, 1).hunting(command).unwrap();
+    let record = hunt(&campaign, command, PartName::Own, &subject(), None).unwrap();
+    let why = record.failed.expect("a reason");
+    assert!(why.ends_with(": why"), "{why}");
+}
+
+#[test]
+fn a_program_that_takes_too_long_is_told_its_time_in_seconds() {
+    let command = "sleep 30; : {pack} {out}";
+    let campaign = Campaign { candidate_ms: Some(250), ..Campaign::new(5, 1).hunting(command).unwrap() };
+    let record = hunt(&campaign, command, PartName::Own, &subject(), None).unwrap();
+    assert_eq!(record.failed.as_deref(), Some("it ran for more than 0.25 s"));
+}
+
+/// It would fail in each scene: nothing is hunted.
+#[test]
+fn what_is_no_program_ends_a_campaign() {
+    let folder = tempfile::tempdir().unwrap();
+    let plain = folder.path().join("plain");
+    std::fs::write(&plain, "no program").unwrap();
+    for program in [quoted(&plain.to_string_lossy()), "no-such-program-anywhere".into()] {
+        let command = format!("{program} {{pack}} {{out}}");
+        let campaign = Campaign::new(5, 1).hunting(&command).unwrap();
+        let error = hunt(&campaign, &command, PartName::Own, &subject(), None).expect_err("an error");
+        assert!(error.to_string().contains("expected a program that can be run"), "{error}");
+    }
+}

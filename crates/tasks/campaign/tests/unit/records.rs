@@ -2,7 +2,9 @@
 
 use super::*;
 use crate::merge::merge;
-use crate::record::{MAX_DESCRIBED_RAYS, PartName, PartRecord, QuantityRecord, WorstRecord, WrongRay};
+use crate::record::{
+    MAX_DESCRIBED_RAYS, PartName, PartRecord, QuantityRecord, ReasonRecord, WorstRecord, WrongRay,
+};
 use raypencil_judge::{Class, Quantity};
 use tempfile::TempDir;
 
@@ -280,6 +282,37 @@ fn counts_at_their_limits_are_taken() {
     part.wrong = vec![part.wrong[0].clone(); MAX_DESCRIBED_RAYS];
     part.hits = part.compared + part.not_compared;
     assert_eq!(check_record(&full, &campaign()), Ok(()));
+    // The largest count, as many reasons as there are sensors, and reasons that explain or break all of their rays.
+    let most = 1 << 42;
+    let mut large = record(0);
+    let part = &mut large.parts[0];
+    (part.compared, part.by_class) = (most, [most - 2, 0, 0, 0, 1, 1]);
+    let reason = |mistakes: usize, explained: u64, broken: u64| ReasonRecord {
+        mistakes: vec!["scaled".to_string(); mistakes],
+        clause: "lengths are times 2".into(),
+        wrong: 2,
+        explained,
+        right: 9,
+        broken,
+    };
+    let with = |reasons: Vec<ReasonRecord>| {
+        let mut with = large.clone();
+        with.parts[0].reasons = reasons;
+        check_record(&with, &campaign())
+    };
+    assert_eq!(with(vec![reason(2, 2, 9); 65]), Ok(()));
+    assert!(with(vec![reason(1, 0, 0); 66]).unwrap_err().contains("66 reasons for 2 wrong rays"));
+    assert!(with(vec![reason(0, 0, 0)]).unwrap_err().contains("a reason of 0 mistakes"));
+    assert!(with(vec![reason(3, 0, 0)]).unwrap_err().contains("a reason of 3 mistakes"));
+    assert!(with(vec![reason(1, 3, 0)]).unwrap_err().contains("explains 3 of 2 rays"));
+    assert!(with(vec![reason(1, 0, 10)]).unwrap_err().contains("breaks 10 of 9"));
+    // As many terrains as a campaign may have, and the last of them.
+    let large = Campaign::new(5, crate::plan::MAX_TERRAINS);
+    assert!(large.clone().checked(None).is_ok());
+    assert!(Campaign { terrains: crate::plan::MAX_TERRAINS + 1, ..large.clone() }.checked(None).is_err());
+    assert!(Campaign { terrains: 1, ..large }.checked(None).is_ok());
+    assert_eq!(check_record(&record(3), &campaign()), Ok(()));
+    assert!(check_record(&record(4), &campaign()).unwrap_err().contains("terrain 4: there are 4 terrains"));
     // A ground of as many faces as --max-faces is small enough; of one more nothing but its lattice is run.
     let bounded = Campaign { max_faces: Some(7), ..campaign() };
     assert!(bounded.parts_of(7).eq(PartName::ALL));
@@ -327,4 +360,85 @@ fn a_shard_that_is_none_is_not_run() {
     let endless = Campaign { terrains: u64::MAX, ..campaign() };
     assert!(run(&endless, Shard::WHOLE).to_string().contains("terrains"));
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn missing_shards_are_named_from_1_and_many_are_counted() {
+    let missing = |given: &[u64], count: u64| {
+        let folder = TempDir::new().unwrap();
+        for &index in given {
+            let shard = Shard { index, count };
+            let terrains = shard.terrains(&campaign()).map(record).collect();
+            let result = ShardResult { shard, terrains };
+            write_sealed(&result_file(folder.path(), shard), &campaign(), &result, None).unwrap();
+        }
+        merge(&[folder.path().to_path_buf()], COMMIT).unwrap_err().to_string()
+    };
+    let some = missing(&[0, 2], 4);
+    assert!(some.contains("no shard 2, 4 of 4; expected all of them"), "{some}");
+    // Twenty of 24 are named.
+    let many = missing(&[0], 25);
+    assert!(many.contains("no shard 2, 3, ") && many.contains(", 20, 21 and 4 others of 25"), "{many}");
+    let all = missing(&[0], 21);
+    assert!(all.contains(", 20, 21 of 21"), "{all}");
+}
+
+#[test]
+fn a_result_by_the_name_of_another_shard_is_not_that_shard_s() {
+    let folder = halves(|_, _| {});
+    let [first, second] = [0, 1].map(|index| Shard { index, count: 2 });
+    assert!(has_result(&campaign(), first, folder.path()) && has_result(&campaign(), second, folder.path()));
+    std::fs::copy(result_file(folder.path(), first), result_file(folder.path(), second)).unwrap();
+    assert!(!has_result(&campaign(), second, folder.path()));
+}
+
+#[test]
+fn what_a_terrain_left_is_removed_where_it_is_as_it_was_and_nowhere_else() {
+    let parent = TempDir::new().unwrap();
+    let folder = parent.path().join("campaign");
+    let names =
+        ["wrong/terrain-000003-own/a", "wrong/changed", "misses/b", "terrains/c", "other/d", "../outside"];
+    let mut left = Vec::new();
+    for name in names {
+        let path = folder.join(name);
+        create_folder(path.parent().unwrap()).unwrap();
+        std::fs::write(&path, name).unwrap();
+        left.push(InputFile { name: name.into(), sha256: file_sha256_hex(&path).unwrap().1 });
+    }
+    std::fs::write(folder.join("wrong/changed"), "by hand").unwrap();
+    remove_left(&folder, Some(Made { left, ..this() }));
+    let is_there = names.map(|name| folder.join(name).exists());
+    assert_eq!(is_there, [false, true, false, true, true, true]);
+    // Folders that became empty go too.
+    assert!(!folder.join("misses").exists() && !folder.join("wrong/terrain-000003-own").exists());
+}
+
+#[test]
+fn a_scene_of_one_s_own_is_probed_where_it_lies_and_an_aimed_one_where_it_is_written() {
+    let folder = TempDir::new().unwrap();
+    let scene = folder.path().join("a.toml");
+    std::fs::write(&scene, "version = 1\n").unwrap();
+    let own = campaign().over(crate::OwnScenes::read(folder.path(), None).unwrap());
+    assert_eq!(own.arguments(0, PartName::Own), scene.display().to_string());
+    assert_eq!(own.arguments(0, PartName::Aimed), "scene.toml");
+    assert_eq!(campaign().arguments(0, PartName::Own), "scene.toml");
+}
+
+#[test]
+fn a_campaign_goes_on_in_its_folder_after_its_rig_changed() {
+    let folder = TempDir::new().unwrap();
+    let (scenes, rig) = (folder.path().join("scenes"), folder.path().join("rig.toml"));
+    std::fs::create_dir(&scenes).unwrap();
+    let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    std::fs::write(scenes.join("a.obj"), obj).unwrap();
+    let with = |text: &str| {
+        std::fs::write(&rig, text).unwrap();
+        campaign().over(crate::OwnScenes::read(&scenes, Some(&rig)).unwrap())
+    };
+    let before = with("version = 1\n");
+    let after = with("version = 1\ncamera = { width_px = 9 }\n");
+    // It is the same plan, whose terrains are run again.
+    assert!(before.is_planned_as(&after) && !before.has_same_files(&after, 0));
+    let other = campaign().over(crate::OwnScenes::read(&scenes, None).unwrap());
+    assert!(!before.is_planned_as(&other));
 }
