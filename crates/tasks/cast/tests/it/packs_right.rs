@@ -1,0 +1,136 @@
+//! Packs of rays: right programs pass, whatever they give and however they store it.
+
+use raypencil_cast::{
+    CandidateConventions, Questions, cast, check_ray_pack, rays_from_bytes, write_ray_pack,
+};
+use raypencil_files::write_npy_numbers;
+use raypencil_referee::ExactCast;
+use raypencil_scene::{Precision, Sides, Silent};
+
+use super::pack_trial::{Folders, VALUES, cube, rays, source};
+
+#[test]
+fn exact_answers_in_fewer_digits_are_right() {
+    for is_half in [false, true] {
+        let checked = Folders::right().store(is_half, 0, &VALUES).check();
+        assert!(checked.passes(), "half {is_half}: {:?}", checked.comparison.wrong().next());
+        // Without faces the distance tells which one is met.
+        assert!(Folders::right().store(is_half, 0, &VALUES).without(&["face"]).check().passes());
+        // Half a unit is allowed, a whole one is not.
+        for name in VALUES {
+            let checked = Folders::right().store(is_half, 1, &[name]).check();
+            let of = checked.comparison.values.iter().find(|tally| tally.value.name() == name).unwrap();
+            assert!(
+                10 * of.wrong > 8 * of.compared,
+                "half {is_half}: {} of {} {name}",
+                of.wrong,
+                of.compared
+            );
+        }
+    }
+}
+
+#[test]
+fn a_right_program_passes_whatever_it_gives() {
+    assert!(Folders::right().check().passes());
+    let all = ["side", "point", "normal", "barycentric", "cos_incidence"];
+    assert!(Folders::right().without(&all).without(&["face"]).check().passes());
+    assert!(Folders::right().without(&all).without(&["face", "t"]).check().passes());
+    let faces = Folders::right().without(&all).without(&["t", "range"]);
+    assert!(faces.check().passes());
+    // Nothing says which rays hit.
+    let nothing = faces.without(&["face"]);
+    let folders = [nothing.pack.path(), nothing.candidate.path()];
+    let error =
+        check_ray_pack(folders[0], folders[1], Precision::F64, CandidateConventions::default(), &Silent);
+    assert!(error.unwrap_err().to_string().contains("expected face.npy, t.npy or range.npy"));
+}
+
+#[test]
+fn a_declared_number_is_no_face_of_rays_that_hit_and_is_rounded_as_it_is_stored() {
+    let declared = |miss| CandidateConventions { miss: Some(miss), ..CandidateConventions::default() };
+    let with = |miss: f64| {
+        let of = move |_: usize, length: f64| if length.is_finite() { length } else { miss };
+        Folders::right().change("t", of).change("range", of)
+    };
+    let faces = Folders::right().of("face");
+    for miss in [0.0, 3.0, 11.0] {
+        assert!(faces.contains(&miss), "no ray hits face {miss}");
+        let checked = with(miss).check_by(Precision::F64, declared(miss));
+        assert!(checked.passes(), "{miss}: {:?}", checked.comparison.wrong().next());
+        // Nor where a distance alone has the number.
+        assert!(with(miss).without(&["range"]).check_by(Precision::F64, declared(miss)).passes());
+    }
+    // Each with a unit of its last place as it is stored. The last is nearly half a unit from what is stored of it.
+    let ulp = |exponent: i32| libm::scalbn(1.0, exponent);
+    for (miss, is_half, unit) in [
+        (1e30, false, ulp(76)),
+        (0.1, false, ulp(-27)),
+        (-999.9, false, ulp(-14)),
+        (0.1, true, ulp(-14)),
+        (-999.9, true, ulp(-1)),
+        (7.0 + 0.98 * ulp(-22), false, ulp(-21)),
+    ] {
+        // Distances alone say which rays hit.
+        let passes = |stored: f64| {
+            let folders = with(stored).store(is_half, 0, &["t", "range"]).without(&["face"]);
+            folders.check_by(Precision::F64, declared(miss)).passes()
+        };
+        assert!(passes(miss), "{miss}, half {is_half}");
+        assert!(!passes(miss + unit), "a unit beside {miss}, half {is_half}");
+    }
+}
+
+/// Rays that end before anything is there, and just upon it.
+#[test]
+fn the_end_of_a_ray_beside_a_face_is_no_hit() {
+    let text: String =
+        (0..40).map(|k| format!("0.25,0.125,3,0,0,-1,0,{}\n", 1.0 + f64::from(k) / 20.0)).collect();
+    let rays = rays_from_bytes(text.as_bytes(), "here".as_ref()).unwrap();
+    let mesh = cube();
+    let exact = ExactCast::new(&mesh);
+    let passes = |faces: bool, moved: f64| {
+        let [pack, candidate] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+        write_ray_pack(pack.path(), (&cube(), &rays, Sides::Both), &source(), &Silent).unwrap();
+        let met: Vec<_> =
+            rays.rays.iter().map(|ray| exact.first(ray, Sides::Both).first().copied()).collect();
+        assert!(met.iter().flatten().count() > 5 && met.iter().any(Option::is_none));
+        let face: Vec<f64> = met.iter().map(|face| face.map_or(-1.0, |face| f64::from(face.0))).collect();
+        let t = rays.rays.iter().zip(&met).map(|(ray, face)| match face {
+            Some(face) => exact.values(ray, *face).unwrap().t.double,
+            None => ray.t_max + moved,
+        });
+        let folder = candidate.path();
+        write_npy_numbers(folder.join("t.npy"), &[40], &t.collect::<Vec<_>>()).unwrap();
+        if faces {
+            write_npy_numbers(folder.join("face.npy"), &[40], &face).unwrap();
+        }
+        let conventions = CandidateConventions::default();
+        check_ray_pack(pack.path(), folder, Precision::F64, conventions, &Silent).unwrap().comparison.passes()
+    };
+    assert!(passes(true, 0.0));
+    // Without faces it is a hit, and another number is none of the ray's.
+    assert!(!passes(false, 0.0) && !passes(true, 0.001));
+}
+
+/// A pack that asks for fronts has answers of fronts, in the comparison and in what is drawn of it: rays from inside the cube meet
+/// backs alone.
+#[test]
+fn a_pack_of_fronts_is_shown_with_answers_of_fronts() {
+    let checked = |sides: Sides| {
+        let folders = Folders::new(sides, sides, |_| {});
+        let conventions = CandidateConventions::default();
+        check_ray_pack(folders.pack.path(), folders.candidate.path(), Precision::F64, conventions, &Silent)
+            .unwrap()
+    };
+    let [both, fronts] = [Sides::Both, Sides::Fronts].map(checked);
+    assert!(both.passes() && fronts.passes());
+    assert_eq!([both.fronts_only, fronts.fronts_only], [false, true]);
+    for (checked, sides) in [(&both, Sides::Both), (&fronts, Sides::Fronts)] {
+        assert_eq!(checked.answers, cast(&cube(), &rays().rays, sides, Questions::default(), &Silent));
+        // What is shown of a candidate that passes is what it says.
+        let stated = checked.stated.face.as_ref().expect("faces");
+        assert_eq!(checked.answers.hits().count(), stated.iter().flatten().count());
+    }
+    assert!(fronts.answers.hits().count() < both.answers.hits().count());
+}
