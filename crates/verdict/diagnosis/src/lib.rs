@@ -49,7 +49,8 @@
 //! The files, from the parts up:
 //!
 //! ```text
-//! mistake        the mistakes: name, page of the documentation
+//! mistake        the mistakes
+//! mistake_names  their names for programs, and the pages of the documentation
 //! words          the mistakes in words
 //! numbers        the plainest number that says the same
 //! channel        channels of a recording, cell by cell
@@ -91,6 +92,7 @@ mod judged;
 mod landing;
 mod lengths;
 mod mistake;
+mod mistake_names;
 mod numbers;
 mod rays;
 mod rules;
