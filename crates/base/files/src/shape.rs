@@ -34,10 +34,18 @@ impl Shape {
         // CHOICE: surplus bytes are refused as well. Header and numbers then do not belong together, and every
         // number may be in a wrong place.
         if claimed != u128::from(bytes) {
-            let expected = format!("the {claimed} bytes of its shape (is the file cut off?)");
+            let expected = format!("the {claimed} bytes of its shape ({})", why_not_so_long(bytes, claimed));
             return Err(Fault::new("numbers", format!("{bytes} bytes"), expected));
         }
         Ok(())
+    }
+}
+
+/// What may be wrong with a file that has so many bytes of numbers in place of those that its shape claims.
+pub(crate) fn why_not_so_long(bytes: u64, claimed: u128) -> &'static str {
+    match u128::from(bytes) < claimed {
+        true => "is the file cut off?",
+        false => "is its shape right?",
     }
 }
 

@@ -7,6 +7,7 @@ use crate::error::{Fault, FileError};
 use crate::limits::Limits;
 use crate::npy::header::{self, Header, Number};
 use crate::npy::read::{bits, real, signed};
+use crate::shape::why_not_so_long;
 use crate::values::Storage;
 
 /// An array of any shape.
@@ -57,7 +58,10 @@ fn decode(file: &[u8]) -> Result<Numbers, Fault> {
     let claimed = header.shape.iter().try_fold(size as u64, |bytes, &length| bytes.checked_mul(length));
     if claimed != Some(numbers.len() as u64) {
         let expected = match claimed {
-            Some(claimed) => format!("the {claimed} bytes of shape {} (is the file cut off?)", shape()),
+            Some(claimed) => {
+                let why = why_not_so_long(numbers.len() as u64, claimed.into());
+                format!("the {claimed} bytes of shape {} ({why})", shape())
+            }
             None => format!("more bytes than any file has, of shape {}", shape()),
         };
         return Err(Fault::new("numbers", format!("{} bytes", numbers.len()), expected));

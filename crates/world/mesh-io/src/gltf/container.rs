@@ -32,7 +32,8 @@ pub(super) fn split(file: &[u8]) -> Result<Container<'_>, Fault> {
     let length = length as usize;
     if !(12..=file.len()).contains(&length) {
         let found = format!("a length of {length} in a file of {} bytes", file.len());
-        return Err(Fault::new("GLB header", found, "the length of the file (is it cut off?)"));
+        let why = if length > file.len() { " (is it cut off?)" } else { "" };
+        return Err(Fault::new("GLB header", found, format!("the length of the file{why}")));
     }
     let mut container = Container { json: &[], bin: None };
     let mut at = 12;

@@ -258,7 +258,8 @@ fn shapes_are_held_against_the_file() {
     );
     let cut = "expected the 48 bytes of its shape (is the file cut off?)";
     assert_eq!(shape("(2, 3)", 47), format!("numbers: 47 bytes; {cut}"));
-    assert_eq!(shape("(2, 3)", 49), format!("numbers: 49 bytes; {cut}"));
+    let longer = cut.replace("is the file cut off?", "is its shape right?");
+    assert_eq!(shape("(2, 3)", 49), format!("numbers: 49 bytes; {longer}"));
     let bytes = file(&dictionary("<f8", "False", "(2, 3)"), &[0; 48]);
     let error = read_with(&bytes, &Limits::of_size(2, 3)).unwrap_err();
     assert_eq!(error, "shape: 2 rows of 3 columns, 1 components; expected 3 rows of 2 columns");
@@ -382,6 +383,10 @@ fn numbers_that_do_not_fit_their_shape_are_refused() {
     assert_eq!(
         refused(dictionary("<f4", "False", "(3, 6)"), &[0; 70]),
         "numbers: 70 bytes; expected the 72 bytes of shape [3, 6] (is the file cut off?)"
+    );
+    assert_eq!(
+        refused(dictionary("<f4", "False", "(3, 6)"), &[0; 76]),
+        "numbers: 76 bytes; expected the 72 bytes of shape [3, 6] (is its shape right?)"
     );
     // 2^32 times 2^32 rays: no memory is asked for.
     assert_eq!(

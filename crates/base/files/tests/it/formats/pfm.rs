@@ -100,7 +100,7 @@ fn files_that_are_no_float_map_are_refused() {
     refused(b"Pf\n8192 8192\n-1\nfifteen bytes..", &format!("numbers: 15 bytes; {claimed}"));
     refused(
         &[&b"Pf\n1 1\n-1\n"[..], &[0; 5]].concat(),
-        "numbers: 5 bytes; expected the 4 bytes of its shape (is the file cut off?)",
+        "numbers: 5 bytes; expected the 4 bytes of its shape (is its shape right?)",
     );
     let whole = file("PF\n2 2\n-1\n", &[0.5; 12], f32::to_le_bytes);
     assert!(read(&whole).is_ok());
