@@ -74,6 +74,11 @@ pub(super) fn read(file: &[u8]) -> Result<Parts, Fault> {
     }
 }
 
+/// Whether a file, whatever its name, is one of this format with a face.
+pub(super) fn is_like(file: &[u8]) -> bool {
+    read(file).is_ok_and(|parts| parts.polygon_count() > 0)
+}
+
 /// The line of a polygon, counted from 0 among the polygons of a file that [`read`] has read.
 pub(super) fn line_of_polygon(file: &[u8], polygon: u32) -> Option<usize> {
     let is_polygon = |(_, statement): &(usize, &[u8])| matches!(words(statement).next(), Some(b"f" | b"fo"));

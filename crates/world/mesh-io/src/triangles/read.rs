@@ -191,6 +191,12 @@ pub(crate) fn format(bytes: &[u8], file: &Path) -> Result<Format, Fault> {
     match (bytes, ending.as_deref()) {
         ([b'g', b'l', b'T', b'F', ..], _) => Ok(Format::Gltf),
         ([b'p', b'l', b'y', b'\n' | b'\r', ..], _) => Ok(Format::Ply),
+        (_, Some(ending @ ("glb" | "gltf" | "stl" | "ply")))
+            if !begins_as(ending, bytes) && obj::is_like(bytes) =>
+        {
+            let found = format!("lines of an OBJ file in one that ends in .{ending}");
+            Err(Fault::new("format", found, "its own format, or the ending .obj"))
+        }
         (_, Some("glb" | "gltf")) => Ok(Format::Gltf),
         (_, Some("stl")) => Ok(Format::Stl),
         (_, Some("obj")) => Ok(Format::Obj),
@@ -214,6 +220,15 @@ pub(crate) fn format(bytes: &[u8], file: &Path) -> Result<Format, Fault> {
             let expected = "GLB, glTF, STL or PLY, or the ending .obj; an elevation model is a GeoTIFF";
             Err(Fault::new("first bytes", found, expected))
         }
+    }
+}
+
+/// Whether a file begins as one with this ending, where no mark of its format has told it.
+fn begins_as(ending: &str, bytes: &[u8]) -> bool {
+    match ending {
+        "stl" => stl::is_binary(bytes) || stl::begins_as_text(bytes),
+        "glb" | "gltf" => bytes.trim_ascii_start().starts_with(b"{"),
+        _ => false,
     }
 }
 

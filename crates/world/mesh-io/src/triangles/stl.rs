@@ -21,14 +21,19 @@ pub(super) fn read(file: &[u8]) -> Result<Parts, Fault> {
     // A binary file may start with "solid" as well. It has bytes 0, which no text has but at its end: at least one is in its
     // number of faces, which would otherwise need more bytes than any file has.
     let text = without_mark(without_zeros(file));
-    let starts_as_text =
-        text.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+    let starts_as_text = begins_as_text(text);
     // A header of text and a number of faces that is 0: no facet fits into a text of this length.
     let is_empty_binary = file.len() == HEADER_BYTES && claimed_faces(file) == Some(0);
     match starts_as_text && !text.contains(&0) && !is_empty_binary {
         true => read_text(text),
         false => read_binary(file),
     }
+}
+
+/// Whether a file begins with the word of a text.
+pub(super) fn begins_as_text(file: &[u8]) -> bool {
+    let text = without_mark(file).trim_ascii_start();
+    text.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
 }
 
 /// A text without the bytes 0 that some programs write at its end.

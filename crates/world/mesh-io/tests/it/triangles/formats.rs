@@ -321,6 +321,17 @@ fn contents_decide_before_the_ending() {
         assert_eq!(parse("a.3d", &bytes).unwrap().faces(), FACES);
     }
     assert_eq!(parse("a.OBJ", &samples::obj()).unwrap().faces(), FACES);
+    for ending in ["stl", "ply", "glb", "gltf"] {
+        let expected = "its own format, or the ending .obj";
+        let message =
+            format!("format: lines of an OBJ file in one that ends in .{ending}; expected {expected}");
+        refused(&format!("a.{ending}"), samples::obj(), &message);
+    }
+    refused(
+        "a.stl",
+        b"v 0 0 0\n",
+        "header: 8 bytes; expected a text that starts with `solid`, or the 84 bytes of a binary header",
+    );
     let expected = "GLB, glTF, STL or PLY, or the ending .obj; an elevation model is a GeoTIFF";
     refused("a.3d", b"v 0", &format!("first bytes: [76, 20, 30]; expected {expected}"));
     let expected = "GLB, glTF, STL, OBJ or PLY, to which `assimp export` or Blender converts it";
