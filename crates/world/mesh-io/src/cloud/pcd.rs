@@ -150,6 +150,11 @@ pub(super) fn read(file: &[u8], keeps: impl Fn(&str) -> bool) -> Result<Cloud, F
     let keeps = |field: &PackedField| field.is_kept() && keeps_name(&field.name);
     let columns = match header.data.as_str() {
         "ascii" => of_text(&header, body, keeps)?,
+        _ if is_of_text(&header, body) => {
+            let place = format!("line {}", header.line);
+            let found = format!("DATA {}, before rows of numbers as text", header.data);
+            return Err(Fault::new(place, found, "DATA ascii, or the bytes of the numbers"));
+        }
         "binary" => {
             let point_step: usize = header.fields.iter().map(PackedField::bytes).sum();
             let data = of_size(&header, body, point_step as u64)?;
@@ -212,6 +217,16 @@ pub(super) fn read(file: &[u8], keeps: impl Fn(&str) -> bool) -> Result<Cloud, F
     Ok(Cloud { width: header.width, height: header.height, columns })
 }
 
+/// Whether the bytes after the header begin with a row of numbers as text, one for each number of a point.
+fn is_of_text(header: &Header, body: &[u8]) -> bool {
+    let mut lines = body[..body.len().min(MAX_HEADER_BYTES)].split(|&byte| byte == b'\n');
+    let first = lines.find(|line| !line.trim_ascii().is_empty());
+    let Some(Ok(first)) = first.map(std::str::from_utf8) else { return false };
+    let width: usize = header.fields.iter().map(|field| field.count).sum();
+    let words = || first.split_ascii_whitespace();
+    words().count() == width && words().all(|word| word.parse::<f64>().is_ok())
+}
+
 /// The bytes of all points, after it is known that they are there.
 fn of_size<'a>(header: &Header, body: &'a [u8], stride: u64) -> Result<&'a [u8], Fault> {
     let claimed = header.points.checked_mul(stride);
@@ -230,6 +245,13 @@ fn of_text(
     body: &[u8],
     keeps: impl Fn(&PackedField) -> bool,
 ) -> Result<Vec<CloudColumn>, Fault> {
+    let is_text = |byte: u8| byte.is_ascii_graphic() || byte.is_ascii_whitespace();
+    if let Some(at) = body.iter().position(|&byte| !is_text(byte)) {
+        let lines = body[..at].iter().filter(|&&byte| byte == b'\n').count();
+        let place = format!("line {}", header.line + 1 + lines);
+        let expected = "numbers as text, as `DATA ascii` says (is it DATA binary?)";
+        return Err(Fault::new(place, "bytes that are no text", expected));
+    }
     let width: usize = header.fields.iter().map(|field| field.count).sum();
     // A digit and a blank, or the end of the line, for each number.
     let least = (2 * width as u64).checked_mul(header.points);

@@ -114,8 +114,29 @@ fn what_is_no_cloud_is_refused_in_one_sentence() {
         ),
         ("WIDTH 1\nHEIGHT 1\nPOINTS 1", "WIDTH 9999999999999999999\nHEIGHT 9999999999", "header: no POINTS"),
         ("DATA ascii", "DATA octal", "line 8: octal; expected DATA and ascii"),
-        ("DATA ascii", "DATA binary", "data: 6 bytes; expected 12 for each of 1 points"),
-        ("DATA ascii", "DATA binary_compressed", "data: 6 bytes; expected two sizes of 4 bytes"),
+        (
+            "DATA ascii",
+            "DATA binary",
+            "line 8: DATA binary, before rows of numbers as text; expected DATA ascii, or the bytes of the numbers",
+        ),
+        (
+            "DATA ascii",
+            "DATA binary_compressed",
+            "line 8: DATA binary_compressed, before rows of numbers as text",
+        ),
+        ("DATA ascii\n1 2 3\n", "DATA binary\n123456", "data: 6 bytes; expected 12 for each of 1 points"),
+        (
+            "DATA ascii\n1 2 3\n",
+            "DATA binary_compressed\n123456",
+            "data: 6 bytes; expected two sizes of 4 bytes",
+        ),
+        // As many bytes as points of single precision have.
+        ("DATA ascii\n1 2 3\n", "DATA binary\n\n1.25 -2 3e+01\n", "line 8: DATA binary, before rows"),
+        (
+            "1 2 3\n",
+            "1 2 3\n\u{1} \u{80}",
+            "line 10: bytes that are no text; expected numbers as text, as `DATA ascii` says (is it DATA binary?)",
+        ),
         ("DATA ascii\n1 2 3\n", "", "line 8: the end of the header"),
         ("1 2 3", "1 2 x", "line 9: \"x\"; expected a decimal number, or nan"),
         ("1 2 3", "1 2 3\n4 5 6", "line 10: a line after the last point"),
