@@ -14,6 +14,10 @@ const MAX_MANIFEST_BYTES: u64 = 1 << 24;
 /// Reads the manifest of `folder` and checks its consistency.
 pub(super) fn read_manifest(folder: &Path) -> Result<Manifest, FileError> {
     let path = folder.join(MANIFEST_NAME);
+    if !folder.exists() {
+        let expected = format!("the folder of a pack, with {MANIFEST_NAME} or raypack.json");
+        return Err(pack_fault(folder, Fault::new("pack", "there is no such folder", expected)));
+    }
     if !path.exists() {
         let expected = format!("a folder with {MANIFEST_NAME} (is this a pack?)");
         return Err(pack_fault(folder, Fault::new("pack", format!("no {MANIFEST_NAME}"), expected)));

@@ -152,6 +152,10 @@ fn folders_without_a_valid_manifest_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let none = "PACK: pack: no manifest.json; expected a folder with manifest.json (is this a pack?)";
     assert_eq!(refusal(folder.path()), none);
+    let misspelt = refusal(&folder.path().join("pakc"));
+    let words =
+        "pack: there is no such folder; expected the folder of a pack, with manifest.json or raypack.json";
+    assert!(misspelt.ends_with(words), "{misspelt}");
     let with = |text: &str| {
         std::fs::write(folder.path().join("manifest.json"), text).unwrap();
         refusal(folder.path())
