@@ -54,6 +54,7 @@
 mod atomic;
 pub mod bytes;
 mod channels;
+mod comment_heading;
 mod disk;
 mod error;
 mod exr;
@@ -87,6 +88,7 @@ pub use channels::{
     Channel, Channels, Declared, DeclaredChannel, Used, add_ray_sets, has_maps, has_ray_sets, is_ray_set,
     read_channels, read_channels_as, read_listed_channels,
 };
+pub use comment_heading::heading_in_comment;
 pub use disk::{TemporaryFolder, create_dir_all, remove_dir, remove_file};
 pub use error::{Fault, FileError, Problem, readable, shortened};
 pub use exr::{

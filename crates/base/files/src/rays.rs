@@ -6,6 +6,7 @@ use glam::DVec3;
 use raypencil_scene::CastRay;
 
 use crate::bytes;
+use crate::comment_heading::heading_in_comment;
 use crate::error::{Fault, FileError};
 use crate::limits::Limits;
 use crate::npy::npy_numbers_from_bytes;
@@ -157,7 +158,9 @@ impl Heading {
         let lines = bytes.split(|byte| *byte == b'\n').zip(1..);
         let before = lines.take_while(|(line, _)| line.starts_with(b"#") || line.trim_ascii().is_empty());
         let words = |(line, number): (&[u8], u64)| {
-            let words = words_of_heading(std::str::from_utf8(line).ok()?)?;
+            let is_name = |word: &str| NAMES.iter().any(|name| word.eq_ignore_ascii_case(name));
+            let line = std::str::from_utf8(line).ok()?;
+            let words = heading_in_comment(line, MIN_NAMES..=NAMES.len(), is_name)?;
             Some((words, number))
         };
         let last = before.filter_map(words).last();
@@ -170,24 +173,6 @@ impl Heading {
         self.places.iter().zip(numbers).for_each(|(place, number)| row[*place] = *number);
         row
     }
-}
-
-/// The words of a comment that is meant as a heading: as many as a ray has numbers, whatever stands between them, and some of them are its
-/// names, but for a unit.
-fn words_of_heading(comment: &str) -> Option<Vec<String>> {
-    let text = comment.trim_start_matches('#').trim();
-    let separators: &[char] = if text.contains([',', ';']) { &[',', ';'] } else { &[' ', '\t'] };
-    let words: Vec<String> = text
-        .split(separators)
-        .map(|word| word.trim().trim_matches(['"', '\'']).trim().to_string())
-        .filter(|word| separators.contains(&',') || !word.is_empty())
-        .collect();
-    let without_unit = |word: &str| word.split([' ', '[', '(', '/']).next().unwrap_or_default().to_string();
-    let is_name = |word: &&String| NAMES.iter().any(|name| without_unit(word).eq_ignore_ascii_case(name));
-    // A unit is one word; a comment that says what the columns are has more.
-    let is_short = words.iter().all(|word| word.split_whitespace().count() <= 2);
-    let is_heading = (MIN_NAMES..=NAMES.len()).contains(&words.len()) && is_short;
-    (is_heading && words.iter().filter(is_name).count() >= MIN_NAMES / 2).then_some(words)
 }
 
 fn of_csv(bytes: &[u8], file: &Path) -> Result<RayArray, FileError> {

@@ -243,6 +243,17 @@ fn angles_of_a_file_are_rays_with_times() {
         read("time_s, azimuth_deg, elevation_deg\n0,90,0\n0.25,-90,30\n0.5,180,-90\n", "").unwrap();
     assert_eq!(zeniths, elevations);
     assert_eq!(zeniths.set.rays()[1].t_max, f64::INFINITY);
+    // As NumPy's `savetxt` has a heading, behind another comment or before one.
+    for heading in
+        ["time,azimuth,zenith", "Time/s Azimuth/deg Zenith/deg", "t [s] azimuth [deg] zenith [deg]"]
+    {
+        for rest in ["# 3 rows\n", ""] {
+            let text = format!(
+                "{rest}# {heading}\n# of a rosette\n0,90,90\n0.25,-90,60\n# time,azimuth,phi\n0.5,180,180\n"
+            );
+            assert_eq!(read(&text, "").unwrap(), zeniths, "{text}");
+        }
+    }
     for (text, keys, message) in [
         (
             "0,90\n",
@@ -270,6 +281,22 @@ fn angles_of_a_file_are_rays_with_times() {
             "time/s,azimuth/rad,zenith/rad\n0,1,2\n",
             "",
             "line 1: time/s,azimuth/rad,zenith/rad; expected columns",
+        ),
+        (
+            "time [s],azimuth (rad),elevation (rad)\n0,1,2\n",
+            "",
+            "line 1: time [s],azimuth (rad),elevation (rad); expected columns",
+        ),
+        (
+            "# a rosette\n# azimuth,zenith,time\n1,2,0\n",
+            "",
+            "line 2: azimuth,zenith,time; expected columns in the order time",
+        ),
+        ("#t az el\n0,1,2\n", "", "line 1: t,az,el; expected columns in the order time"),
+        (
+            "# time [ns], azimuth [deg], elevation [deg]\n0,1,2\n",
+            "",
+            "line 1: time [ns],azimuth [deg],elevation [deg]; expected",
         ),
         ("# nothing\n", "", "file: no row; expected rows of time"),
         (

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use raypencil_files::{Fault, FileError, Limits, bytes, sha256};
+use raypencil_files::{Fault, FileError, Limits, bytes, heading_in_comment, sha256};
 use raypencil_scene::pattern::{Channel, MAX_RAYS, Mounting, PatternRays, Spinning};
 use raypencil_scene::{CastRay, SceneError};
 use serde::Deserialize;
@@ -109,7 +109,44 @@ impl Source<'_> {
     }
 }
 
-/// The rows of a file. A heading may name the columns; where it calls the third a zenith, angles count from straight up.
+/// Beginnings of words that a heading of such a file may have. Not all of them are of an order and a unit that is read.
+const NAMES: [&str; 8] =
+    ["time", "azimuth", "elevation", "zenith", "altitude", "inclination", "phi", "theta"];
+
+/// Words that are such names as a whole.
+const SHORT_NAMES: [&str; 5] = ["t", "az", "el", "ze", "zen"];
+
+/// Whether a word of a comment may name a column.
+fn is_name(word: &str) -> bool {
+    let word = word.to_lowercase();
+    NAMES.iter().any(|name| word.starts_with(name)) || SHORT_NAMES.contains(&word.as_str())
+}
+
+/// Whether a heading calls the third column a zenith: its angles then count from straight up.
+fn is_of_zeniths([time, azimuth, third]: [&str; 3], line: usize) -> Result<bool, Fault> {
+    let begins = |field: &str, name: &str| field.to_lowercase().starts_with(name);
+    let is_zenith = begins(third, "zenith");
+    let is_known =
+        begins(time, "t") && begins(azimuth, "azimuth") && (is_zenith || begins(third, "elevation"));
+    // Angles in radians, or times in nanoseconds, would be read as something else.
+    let is_of_unit = |field: &str, units: &[&str]| {
+        let field = field.to_lowercase();
+        let mut parts = field.split(['/', '_', '[', '(', ' ']).skip(1).filter(|part| !part.is_empty());
+        parts.next().is_none_or(|unit| units.contains(&unit.trim_end_matches([']', ')'])))
+    };
+    let degrees = &["deg", "degree", "degrees", ""];
+    if is_known
+        && is_of_unit(time, &["s", "sec", "seconds", ""])
+        && is_of_unit(azimuth, degrees)
+        && is_of_unit(third, degrees)
+    {
+        return Ok(is_zenith);
+    }
+    let expected = format!("columns in the order {ORDER}, or zenith: degrees from straight up");
+    Err(Fault::new(format!("line {line}"), [time, azimuth, third].join(","), expected))
+}
+
+/// The rows of a file. A heading, which may be a comment, may name the columns; where it calls the third a zenith, angles count from straight up.
 fn rows(bytes: &[u8]) -> Result<Vec<[f64; 3]>, Fault> {
     let text = std::str::from_utf8(bytes).map_err(|error| {
         Fault::new(
@@ -120,7 +157,14 @@ fn rows(bytes: &[u8]) -> Result<Vec<[f64; 3]>, Fault> {
     })?;
     let (mut rows, mut is_zenith, mut has_heading) = (Vec::new(), false, false);
     for (number, line) in (1..).zip(text.trim_start_matches('\u{feff}').lines()) {
-        if line.trim().is_empty() || line.trim_start().starts_with('#') {
+        if line.trim().is_empty() {
+            continue;
+        }
+        if line.trim_start().starts_with('#') {
+            // As NumPy writes a heading: other comments are none, but one that is meant as a heading must be one.
+            if let Some(words) = heading_in_comment(line, 3..=3, is_name).filter(|_| rows.is_empty()) {
+                is_zenith = is_of_zeniths([&words[0], &words[1], &words[2]], number)?;
+            }
             continue;
         }
         let fields: Vec<&str> = line.split(',').map(str::trim).collect();
@@ -134,26 +178,7 @@ fn rows(bytes: &[u8]) -> Result<Vec<[f64; 3]>, Fault> {
         };
         let is_heading = fields.iter().all(|field| field.parse::<f64>().is_err());
         if is_heading && rows.is_empty() && !has_heading {
-            let begins = |field: &str, name: &str| field.to_lowercase().starts_with(name);
-            is_zenith = begins(third, "zenith");
-            let is_known =
-                begins(time, "t") && begins(azimuth, "azimuth") && (is_zenith || begins(third, "elevation"));
-            // Angles in radians, or times in nanoseconds, would be read as something else.
-            let is_of_unit = |field: &str, units: &[&str]| {
-                let unit = field.to_lowercase().split(['/', '_', '[', '(', ' ']).nth(1).map(str::to_string);
-                unit.is_none_or(|unit| units.contains(&unit.trim_end_matches([']', ')'])))
-            };
-            let degrees = &["deg", "degree", "degrees", ""];
-            if !is_known
-                || !is_of_unit(time, &["s", "sec", "seconds", ""])
-                || !is_of_unit(azimuth, degrees)
-                || !is_of_unit(third, degrees)
-            {
-                return refuse(
-                    line.trim().into(),
-                    format!("columns in the order {ORDER}, or zenith: degrees from straight up"),
-                );
-            }
+            is_zenith = is_of_zeniths([time, azimuth, third], number)?;
             has_heading = true;
             continue;
         }
