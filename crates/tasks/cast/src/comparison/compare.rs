@@ -155,9 +155,11 @@ struct Judged {
     ratios: [Option<f64>; 7],
 }
 
-/// Whether a t is the end of the ray, as it is or in single precision.
-fn is_end(ray: &CastRay, t: f64) -> bool {
-    t == ray.t_max || t == f64::from(ray.t_max as f32)
+/// Whether a t, which storing may have moved by `stored`, is the end of the ray: as it is, or as arithmetic of single precision has it.
+fn is_end(ray: &CastRay, t: f64, stored: f64, precision: Precision) -> bool {
+    let is_single = precision.unit_roundoff >= Precision::F32.unit_roundoff;
+    let ends = [Some(ray.t_max), is_single.then_some(f64::from(ray.t_max as f32))];
+    ends.into_iter().flatten().any(|end| (t - end).abs() <= stored)
 }
 
 /// Whether weights are those of a corner.
@@ -230,7 +232,10 @@ impl Judge<'_> {
                 (CastValue::T | CastValue::Range, true) => !parts[0].is_finite(),
                 (_, true) => false,
                 // Many programs leave the end of a ray as it was, beside a face that says that nothing is hit.
-                (CastValue::T, false) if by == "face" => parts[0].is_finite() && !is_end(ray, parts[0]),
+                (CastValue::T, false) if by == "face" => {
+                    let stored = self.stated.stored.of(CastValue::T, index);
+                    parts[0].is_finite() && !is_end(ray, parts[0], stored, self.precision)
+                }
                 (CastValue::T | CastValue::Range, false) => parts[0].is_finite(),
                 (CastValue::Point, false) => is_number,
                 // No hit has the cosine 0.

@@ -99,16 +99,7 @@ impl Folders {
                 true => array.values.iter().flat_map(|&value| half(value).to_le_bytes()).collect(),
                 false => array.values.iter().flat_map(|&value| single(value).to_le_bytes()).collect(),
             };
-            let shape: Vec<String> = array.shape.iter().map(u64::to_string).collect();
-            let header = format!(
-                "{{'descr': '<f{}', 'fortran_order': False, 'shape': ({}), }}\n",
-                if is_half { 2 } else { 4 },
-                shape.join(", ")
-            );
-            let mut file = b"\x93NUMPY\x01\x00".to_vec();
-            file.extend((header.len() as u16).to_le_bytes());
-            file.extend(header.as_bytes());
-            file.extend(bytes);
+            let file = npy_of(if is_half { "<f2" } else { "<f4" }, &array.shape, bytes);
             std::fs::write(&path, file).unwrap();
         }
         self
@@ -161,6 +152,18 @@ impl Folders {
             assert!(why.contains(words), "{why}");
         }
     }
+}
+
+/// An NPY file of this type.
+pub(super) fn npy_of(descr: &str, shape: &[u64], bytes: Vec<u8>) -> Vec<u8> {
+    let shape: Vec<String> = shape.iter().map(u64::to_string).collect();
+    let header =
+        format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': ({}), }}\n", shape.join(", "));
+    let mut file = b"\x93NUMPY\x01\x00".to_vec();
+    file.extend((header.len() as u16).to_le_bytes());
+    file.extend(header.as_bytes());
+    file.extend(bytes);
+    file
 }
 
 /// The number of half precision that is nearest, as its bits. (IEEE 754, 3.4)

@@ -7,7 +7,7 @@ use raypencil_files::write_npy_numbers;
 use raypencil_referee::ExactCast;
 use raypencil_scene::{Precision, Sides, Silent};
 
-use super::pack_trial::{Folders, VALUES, cube, rays, source};
+use super::pack_trial::{Folders, VALUES, cube, npy_of, rays, source};
 
 #[test]
 fn exact_answers_in_fewer_digits_are_right() {
@@ -89,7 +89,7 @@ fn the_end_of_a_ray_beside_a_face_is_no_hit() {
     let rays = rays_from_bytes(text.as_bytes(), "here".as_ref()).unwrap();
     let mesh = cube();
     let exact = ExactCast::new(&mesh);
-    let passes = |faces: bool, moved: f64| {
+    let passes = |faces: bool, end: &dyn Fn(f64) -> f64, (precision, is_stored_single)| {
         let [pack, candidate] = [(); 2].map(|()| tempfile::tempdir().unwrap());
         write_ray_pack(pack.path(), (&cube(), &rays, Sides::Both), &source(), &Silent).unwrap();
         let met: Vec<_> =
@@ -98,19 +98,37 @@ fn the_end_of_a_ray_beside_a_face_is_no_hit() {
         let face: Vec<f64> = met.iter().map(|face| face.map_or(-1.0, |face| f64::from(face.0))).collect();
         let t = rays.rays.iter().zip(&met).map(|(ray, face)| match face {
             Some(face) => exact.values(ray, *face).unwrap().t.double,
-            None => ray.t_max + moved,
+            None => end(ray.t_max),
         });
         let folder = candidate.path();
-        write_npy_numbers(folder.join("t.npy"), &[40], &t.collect::<Vec<_>>()).unwrap();
+        let t: Vec<f64> = t.collect();
+        match is_stored_single {
+            true => {
+                let bytes = t.iter().flat_map(|t| (*t as f32).to_le_bytes()).collect();
+                std::fs::write(folder.join("t.npy"), npy_of("<f4", &[40], bytes)).unwrap();
+            }
+            false => write_npy_numbers(folder.join("t.npy"), &[40], &t).unwrap(),
+        }
         if faces {
             write_npy_numbers(folder.join("face.npy"), &[40], &face).unwrap();
         }
         let conventions = CandidateConventions::default();
-        check_ray_pack(pack.path(), folder, Precision::F64, conventions, &Silent).unwrap().comparison.passes()
+        check_ray_pack(pack.path(), folder, precision, conventions, &Silent).unwrap().comparison.passes()
     };
-    assert!(passes(true, 0.0));
+    let double = |faces, end: &dyn Fn(f64) -> f64| passes(faces, end, (Precision::F64, false));
+    assert!(double(true, &|end| end));
     // Without faces it is a hit, and another number is none of the ray's.
-    assert!(!passes(false, 0.0) && !passes(true, 0.001));
+    assert!(!double(false, &|end| end) && !double(true, &|end| end + 0.001));
+    // Arithmetic of single precision has rounded the end; that of double precision has not.
+    let rounded = |end: f64| f64::from(end as f32);
+    assert!(rays.rays.iter().any(|ray| rounded(ray.t_max) != ray.t_max));
+    assert!(passes(true, &rounded, (Precision::F32, false)) && !double(true, &rounded));
+    // Storing has, whatever was computed. The neighbour is not the end.
+    let next = |end: f64| f64::from((end as f32).next_up());
+    for precision in [Precision::F64, Precision::F32] {
+        assert!(passes(true, &|end| end, (precision, true)));
+        assert!(!passes(true, &next, (precision, true)) && !passes(true, &next, (precision, false)));
+    }
 }
 
 /// A pack that asks for fronts has answers of fronts, in the comparison and in what is drawn of it: rays from inside the cube meet
