@@ -161,6 +161,14 @@ def test_a_miss_can_be_declared(cube: Mesh) -> None:
     judged = judge(cube, RAYS, seven)
     assert judged.wrong.tolist() == np.flatnonzero(~truth.hit).tolist()
     assert judged.why == "100.0000 % agree if 7 means no hit: declare miss=7"
+    # A distance that is the number, of a ray that hits by its face, its truth value or its other distance.
+    ray = int(np.flatnonzero(truth.hit & (truth.t != truth.range))[0])
+    for number, own, other in ((truth.t[ray], "t", "range"), (truth.range[ray], "range", "t")):
+        filled = {name: np.where(truth.hit, truth.arrays[name], number) for name in ("t", "range")}
+        for beside in ({"face": truth.face}, {"hit": truth.hit}, {other: filled[other]}):
+            assert judge(cube, RAYS, {own: filled[own]} | beside, miss=number).passes
+        assert judge(cube, RAYS, {own: filled[own]}, miss=number).wrong.tolist() == [ray]
+        assert judge(cube, RAYS, filled | {"face": truth.face}).why == f"100.0000 % agree if {number} means no hit: declare miss={number}"
     # A face whose number is declared, where a distance says that the ray hits.
     assert judge(cube, RAYS, {"t": np.where(truth.hit, truth.t, 0), "face": np.where(truth.hit, truth.face, 0)}, miss=0).passes
     # All other values of rays that miss.
@@ -201,6 +209,9 @@ def test_fronts_only_is_another_question(cube: Mesh) -> None:
         # 4294967295 is none, and what is beyond it is no face either.
         ({"face": np.full(400, 4294967296)}, "face: cell 0 is 4294967296; expected 0 or a larger whole number"),
         ({"t": np.zeros(400, dtype=complex)}, "t is of type complex128"),
+        ({"hit": np.full(400, np.nan)}, "hit: cell 0 is nan; expected 1 where the ray hits, 0 where it does not"),
+        ({"hit": np.full(400, 2)}, "hit: cell 0 is 2; expected 1 where"),
+        ({"hit": np.full(400, "no")}, "hit is of type <U2; expected truth values"),
         (3, "answers are of type int"),
     ],
 )
@@ -251,6 +262,8 @@ def test_hits_alone_are_tests_of_occlusion(cube: raypencil.Mesh) -> None:
     wrong = judge(cube, RAYS, {"hit": other})
     assert wrong.wrong.tolist() == [3, 77] and wrong.why is None
     assert any(word in wrong.text for word in ("a hit; exactly nothing is hit", "no hit; exactly it is face"))
+    assert judge(cube, RAYS, {"hit": hit.astype(np.float32)}).passes and judge(cube, RAYS, {"hit": ~hit}).why is None
+    assert judge(cube, RAYS, {"hit": np.zeros(400, bool)}).why == "every ray is a miss: nothing at all is hit"
     # Beside an edge by less than float32 rounds.
     beside = ([-1.0000001, 0.3, 5.0], [0.0, 0.0, -1.0])
     assert judge(cube, beside, {"hit": np.array(True)}, "f32").counts["rounding"] == 1

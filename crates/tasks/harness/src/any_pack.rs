@@ -96,7 +96,7 @@ fn refuse_other_kinds(form: PackForm, candidate: &Path) -> Result<(), CheckError
     };
     let expected = match form {
         PackForm::Rays => {
-            "a folder with face.npy, t.npy or range.npy, or a point cloud: this pack asks for rays"
+            "a folder with face.npy, t.npy, range.npy or hit.npy, or a point cloud: this pack asks for rays"
         }
         PackForm::Sensors => {
             "maps of its sensors: this pack asks for those of a scene. Answers to rays and point clouds are held to a pack of rays: \

@@ -12,7 +12,7 @@ use crate::npy::{Numbers, read_npy_numbers};
 use crate::values::{Storage, Values};
 
 /// Arrays of a set that have one number per ray: the shape of the first that is there is that of the set.
-const OF_EACH_RAY: [&str; 3] = ["face.npy", "t.npy", "range.npy"];
+const OF_EACH_RAY: [&str; 4] = ["face.npy", "t.npy", "range.npy", "hit.npy"];
 
 /// Arrays that only a set of rays has: maps of sensors have other names.
 const OF_SETS_ALONE: [&str; 2] = ["t.npy", "ties.npy"];

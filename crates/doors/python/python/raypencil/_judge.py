@@ -127,17 +127,6 @@ class _Stated:
         self.errors: dict[str, NDArray[np.float64]] = {}
         self.types: dict[str, np.dtype[Any]] = {}
 
-    def says_hit(self) -> NDArray[np.bool_] | None:
-        """Which rays hit by the first distance, else by the points; ``None`` where there are neither."""
-        says: NDArray[np.bool_] | None = None
-        if "t" in self.arrays:
-            says = np.isfinite(self.arrays["t"])
-        elif "range" in self.arrays:
-            says = np.isfinite(self.arrays["range"])
-        elif "point" in self.arrays:
-            says = np.isfinite(self.arrays["point"]).all(axis=1)
-        return says
-
 
 def _stated(answers: Mapping[str, Any], shape: _arrays.Shape, miss: float | None, is_own: bool) -> _Stated:
     """The answers, checked."""
@@ -172,31 +161,42 @@ def _stated(answers: Mapping[str, Any], shape: _arrays.Shape, miss: float | None
             with np.errstate(invalid="ignore"):
                 is_miss = ((numbers == miss) | (np.abs(numbers - miss) <= allowed)).all(axis=1)
         means_miss[name] = is_miss
-        if name in ("t", "range"):
-            # -Inf is no miss: it says that what is hit is too near.
-            numbers = np.where((np.isnan(numbers[:, 0]) | is_miss)[:, None], np.inf, numbers)
         stated[name] = numbers if name in _VECTORS else numbers.reshape(count)
-    says_hit = told.says_hit()
-    if says_hit is not None and not {"t", "range"} & set(answers):
-        says_hit = says_hit & ~means_miss["point"]
     if "hit" in answers:
-        stated["hit"] = shaped("hit", ()).reshape(count).astype(bool)
+        stated["hit"] = _hits_of("answers: hit", shaped("hit", ()).reshape(count))
+    # Which rays hit by anything but a face: by their truth value, a distance, or without distances a point.
+    hits = np.zeros(count, dtype=bool)
+    distances = [name for name in ("t", "range") if name in stated]
+    for name in distances or ["point"] * ("point" in stated):
+        hits |= np.isfinite(stated[name].reshape(count, -1)).all(axis=1) & ~means_miss[name]
+    if "hit" in stated:
+        hits |= stated["hit"]
     if "face" in answers:
-        # Where a distance or a point says that the ray hits, the number is a face.
-        faces = shaped("face", ()).reshape(count)
-        stated["face"] = _arrays.hit_faces("answers: face", faces, miss, says_hit)
+        # Where these say that the ray hits, the number is a face.
+        stated["face"] = _arrays.hit_faces("answers: face", shaped("face", ()).reshape(count), miss, hits)
+        hits = stated["face"] >= 0
+    for name in distances:
+        # -Inf is no miss: it says that what is hit is too near.
+        is_miss = means_miss[name] & ~hits
+        stated[name] = np.where(np.isnan(stated[name]) | is_miss, np.inf, stated[name])
     # Other values of a ray that misses by its own words may be `miss`, too.
-    if "face" in stated:
-        misses = stated["face"] < 0
-    elif "t" in stated or "range" in stated:
-        misses = ~np.asarray(says_hit)
-    else:
-        misses = ~stated["hit"]
+    misses = ~_hits(told)
     for name in {"side", "cos_incidence", *_VECTORS} & set(stated):
         is_none = misses & means_miss[name]
         none = 0.0 if name == "side" else np.nan
         stated[name] = np.where(is_none[:, None] if name in _VECTORS else is_none, none, stated[name])
     return told
+
+
+def _hits_of(name: str, values: NDArray[Any]) -> NDArray[np.bool_]:
+    """Truth values, of any type: 0 and 1."""
+    if values.dtype.kind not in "fiub":
+        raise RaypencilError(f"{name} is of type {values.dtype}; expected truth values")
+    is_wrong = (values != 0) & (values != 1)
+    if is_wrong.any():
+        cell = int(np.argmax(is_wrong))
+        raise RaypencilError(f"{name}: cell {cell} is {values[cell]}; expected 1 where the ray hits, 0 where it does not")
+    return values.astype(bool)
 
 
 def _drawn(which: NDArray[np.bool_], most: int = _TRIED) -> NDArray[np.intp]:
@@ -228,9 +228,7 @@ def _explained(
         candidate.mkdir()
         _raypencil.pack_rays(core, np.ascontiguousarray(rays[some]), [len(some)], pack, fronts_only)
         for name, array in stated.arrays.items():
-            # Truth values have no file.
-            if name != "hit":
-                np.save(candidate / f"{name}.npy", array[some].astype(stated.types.get(name, array.dtype)))
+            np.save(candidate / f"{name}.npy", array[some].astype(stated.types.get(name, array.dtype)))
         why = _raypencil.check(pack, candidate, [], None, arithmetic)["why"]
     return None if why is None else said(why)
 
@@ -261,8 +259,9 @@ def judge(
             ``cos_incidence``, as :class:`CastResult` has them, in any type; or a :class:`CastResult`. One of ``face``, ``t``,
             ``range`` and ``hit`` must be there: ``hit`` alone is a test of occlusion, which says whether anything is hit and not
             what. A ray misses where the face is -1 or 4294967295, where t or range is +Inf or NaN,
-            where either is ``miss``, and where ``hit`` (truth values) says so; all must say the same, and no other value of
-            such a ray may be a number but ``miss``. Where t and range are -Inf, what is hit is too near for the ray's sensor.
+            where either is ``miss`` and neither face nor hit says otherwise, and where ``hit`` (truth values) says so; all must
+            say the same, and no other value of such a ray may be a number but ``miss``. Where t and range are -Inf, what is hit
+            is too near for the ray's sensor.
         arithmetic: the arithmetic that they were computed in. The type of each array is taken into account beside it: half a
             unit in its last place.
         fronts_only: whether only fronts of faces were to be hit.
@@ -282,8 +281,7 @@ def judge(
             core, of_rays, name, arithmetic, fronts_only, **stated.arrays, stored=stated.errors, on_stage=on_stage
         )
         why = None
-        # Truth values alone have no mistake that could be told.
-        if explain and {"face", "t", "range"} & set(stated.arrays) and (flat["verdict"] == WRONG).any():
+        if explain and (flat["verdict"] == WRONG).any():
             if on_stage is not None:
                 on_stage("looking for a mistake that explains the wrong rays")
             why = _explained(core, of_rays, stated, flat["verdict"], arithmetic, fronts_only)

@@ -8,7 +8,7 @@ use crate::answers::{Answers, FirstHit, side_number};
 
 /// First hits as another program states them: for each quantity that it gives, one value for each ray, in their order.
 ///
-/// Whether a ray hits is said by `face` if it is given, else by `t`, else by `range`, else by `hit`: at least one of them must be. Where
+/// Whether a ray hits is said by `face` if it is given, else by `t`, else by `range`, else by `hit`: one of them must be. Where
 /// it does not, both distances say why: -Inf says that what is hit is too near, +Inf that nothing is hit. `face` or `hit` alone says
 /// neither, nor does NaN. The others have to say the same: where nothing is hit, no value is a number (of a normal and of weights
 /// (0, 0, 0) is none either), and where something is hit, both distances are.
@@ -97,6 +97,47 @@ impl Stated {
             (Some(range), _) => ("range", range[index].is_finite()),
             (None, Some(hit)) => ("hit", hit[index]),
             (None, None) => unreachable!("faces, distances or hits"),
+        }
+    }
+
+    /// Whether a ray hits by its face, or without faces by what else is said of it; see [`hits_beside_face`](Self::hits_beside_face).
+    pub(crate) fn hits_but(&self, index: usize, is_none: impl Fn(f64, f64) -> bool) -> bool {
+        match &self.face {
+            Some(faces) => faces[index].is_some(),
+            None => self.hits_beside_face(index, is_none),
+        }
+    }
+
+    /// Whether a ray hits by any array but that of faces: by its truth value, by a distance, or where no distance is given by its point.
+    /// `is_none` says of a number, and of how far storing may have moved it, that it stands for no hit.
+    pub(crate) fn hits_beside_face(&self, index: usize, is_none: impl Fn(f64, f64) -> bool) -> bool {
+        if self.hit.as_ref().is_some_and(|hit| hit[index]) {
+            return true;
+        }
+        let lengths = [(&self.t, CastValue::T), (&self.range, CastValue::Range)];
+        let mut given = lengths.into_iter().filter_map(|(of, value)| Some((of.as_ref()?[index], value)));
+        if self.t.is_some() || self.range.is_some() {
+            return given
+                .any(|(length, value)| length.is_finite() && !is_none(length, self.stored.of(value, index)));
+        }
+        self.point.as_ref().is_some_and(|points| {
+            let (point, error) = (points[index], self.stored.of(CastValue::Point, index));
+            point.is_finite() && !point.to_array().iter().all(|part| is_none(*part, error))
+        })
+    }
+
+    /// Makes distances +Inf that are not numbers, and of rays that do not hit otherwise those that stand for no hit.
+    pub(crate) fn without_distances(&mut self, is_none: impl Fn(f64, f64) -> bool) {
+        let count = [&self.t, &self.range].into_iter().flatten().map(Vec::len).next().unwrap_or(0);
+        for index in 0..count {
+            let is_hit = self.hits_but(index, &is_none);
+            let errors = [CastValue::T, CastValue::Range].map(|value| self.stored.of(value, index));
+            for (lengths, error) in [&mut self.t, &mut self.range].into_iter().zip(errors) {
+                let Some(length) = lengths.as_mut().map(|lengths| &mut lengths[index]) else { continue };
+                if length.is_nan() || !is_hit && is_none(*length, error) {
+                    *length = f64::INFINITY;
+                }
+            }
         }
     }
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 use raypencil_referee::ExactCast;
 use raypencil_scene::{Reading, Sides};
 
-use super::mistakes::{Extra, Group, misses_at};
+use super::mistakes::{Extra, Group, declare_miss};
 use super::trial::Trial;
 use crate::comparison::Stated;
 
@@ -135,17 +135,7 @@ pub(super) fn constants(trial: &Trial, exact: &ExactCast<'_>, sides: Sides) -> V
     let extra = |number: f64| {
         let text = if number.abs() < 1e15 { number.to_string() } else { format!("{number:e}") };
         let words = format!("{text} means no hit: declare --miss {text}");
-        let undo = move |trial: &mut Trial| {
-            // Where a distance says that the ray hits, the number is a face.
-            let lengths = trial.stated.t.as_ref().or(trial.stated.range.as_ref());
-            let hits: Option<Vec<bool>> =
-                lengths.map(|lengths| lengths.iter().map(|t| t.is_finite() && *t != number).collect());
-            let is_hit = |index: usize| hits.as_ref().is_some_and(|hits| hits[index]);
-            for (index, face) in trial.stated.face.iter_mut().flatten().enumerate() {
-                *face = face.filter(|face| f64::from(face.0) != number || is_hit(index));
-            }
-            misses_at(trial, number, f64::INFINITY);
-        };
+        let undo = move |trial: &mut Trial| declare_miss(trial, number);
         Extra { words, undo: Box::new(undo), is_common: true, group: Group::Others }
     };
     found.into_iter().map(extra).collect()

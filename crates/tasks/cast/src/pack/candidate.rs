@@ -24,10 +24,10 @@ pub struct CloudConventions<'a> {
 /// What a candidate declares of its arrays.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct CandidateConventions<'a> {
-    /// A number that means "no hit" in `t` and `range`, in `face` where no distance, and without distances no point, says that the ray hits,
-    /// and in all other values of rays that miss; of a cloud in all three coordinates. Files of fewer digits hold it rounded. NaN and
-    /// +Inf, and faces of -1 or 4294967295, always mean "no hit". -Inf in `t` and `range` says that what is hit is too near, unless it
-    /// is this number.
+    /// A number that means "no hit" in `face` where nothing else says that the ray hits (`hit`, a distance, or without distances a point), in `t` and `range`
+    /// where neither a face nor, without faces, `hit` or the other distance says so, and in all other values of rays that miss; of a cloud in all three
+    /// coordinates. Files of fewer digits hold it rounded. NaN and +Inf, and faces of -1 or 4294967295, always mean "no hit". -Inf in
+    /// `t` and `range` says that what is hit is too near, unless it is this number.
     pub miss: Option<f64>,
     /// Leave out `face.npy`.
     pub ignores_faces: bool,
@@ -42,7 +42,7 @@ impl CandidateConventions<'_> {
     }
 }
 
-/// Reads what a folder has of `face.npy`, `t.npy`, `range.npy`, `side.npy`, `point.npy`, `normal.npy`, `barycentric.npy`
+/// Reads what a folder has of `face.npy`, `t.npy`, `range.npy`, `hit.npy`, `side.npy`, `point.npy`, `normal.npy`, `barycentric.npy`
 /// and `cos_incidence.npy`, in any type, of the rays' shape or flat.
 ///
 /// # Errors
@@ -54,55 +54,15 @@ pub fn read_candidate(
 ) -> Result<Stated, FileError> {
     refuse_file(folder)?;
     let reader = Reader { folder, shape, count: shape.iter().product() };
-    let distance = |name: &str| -> Result<Stored<f64>, FileError> {
-        let (numbers, errors) = reader.numbers(name, &[])?;
-        let distances = numbers.map(|numbers| {
-            let said = |(ray, number): (usize, f64)| match number {
-                number if conventions.means_miss(number, error_of(&errors, ray)) => f64::INFINITY,
-                f64::NEG_INFINITY => number,
-                number if number.is_nan() => f64::INFINITY,
-                number => number,
-            };
-            numbers.into_iter().enumerate().map(said).collect()
-        });
-        Ok((distances, errors))
-    };
-    let ((t, of_t), (range, of_range)) = (distance("t")?, distance("range")?);
     let vectors = |name: &str| -> Result<Stored<DVec3>, FileError> {
         let (numbers, errors) = reader.numbers(name, &[3])?;
         Ok((numbers.map(|numbers| numbers.chunks_exact(3).map(DVec3::from_slice).collect()), errors))
     };
+    let ((t, of_t), (range, of_range)) = (reader.numbers("t", &[])?, reader.numbers("range", &[])?);
     let (point, of_point) = vectors("point")?;
-    // A distance says itself which rays hit, else a point: a face is then no number for "no hit", whatever its index.
-    let hits = |ray: usize| match t.as_ref().or(range.as_ref()) {
-        Some(lengths) => lengths[ray].is_finite(),
-        None => point.as_ref().is_some_and(|points: &Vec<DVec3>| {
-            let point = points[ray];
-            let is_none = |part: &f64| conventions.means_miss(*part, error_of(&of_point, ray));
-            point.is_finite() && !point.to_array().iter().all(is_none)
-        }),
-    };
-    // Single precision rounds 4294967295 to 4294967296, which is no face either.
-    let none = [-1.0, f64::from(u32::MAX), f64::from(u32::MAX as f32)];
-    let face = match conventions.ignores_faces {
-        true => None,
-        false => {
-            let (numbers, errors) = reader.numbers("face", &[])?;
-            let face = |(ray, number): (usize, f64)| match number {
-                number if !number.is_finite() || none.contains(&number) => Ok(None),
-                number if !hits(ray) && conventions.means_miss(number, error_of(&errors, ray)) => Ok(None),
-                number if number.fract() == 0.0 && (0.0..f64::from(u32::MAX)).contains(&number) => {
-                    Ok(Some(FaceId(number as u32)))
-                }
-                number => {
-                    let expected = "0 or a larger whole number; -1 or 4294967295 for no hit";
-                    Err(reader.fault("face", format!("cell {ray}"), number.to_string(), expected))
-                }
-            };
-            numbers.map(|numbers| numbers.into_iter().enumerate().map(face).collect::<Result<Vec<_>, _>>())
-        }
-    }
-    .transpose()?;
+    let (normal, of_normal) = vectors("normal")?;
+    let (barycentric, of_barycentric) = vectors("barycentric")?;
+    let (cos_incidence, of_cos_incidence) = reader.numbers("cos_incidence", &[])?;
     let (sides, of_side) = reader.numbers("side", &[])?;
     let side = sides.as_ref().map(|numbers| {
         let side = |number: &f64| match *number {
@@ -112,9 +72,6 @@ pub fn read_candidate(
         };
         numbers.iter().map(side).collect()
     });
-    let (normal, of_normal) = vectors("normal")?;
-    let (barycentric, of_barycentric) = vectors("barycentric")?;
-    let (cos_incidence, of_cos_incidence) = reader.numbers("cos_incidence", &[])?;
     let stored = StoredErrors {
         t: of_t,
         range: of_range,
@@ -123,21 +80,16 @@ pub fn read_candidate(
         barycentric: of_barycentric,
         cos_incidence: of_cos_incidence,
     };
-    let mut stated = Stated {
-        face,
-        t,
-        range,
-        // Truth values alone are judged from Python.
-        hit: None,
-        side,
-        point,
-        normal,
-        barycentric,
-        cos_incidence,
-        stored,
-    };
-    if stated.face.is_none() && stated.t.is_none() && stated.range.is_none() {
-        let expected = "face.npy, t.npy or range.npy; without one of them it is not said which rays hit";
+    let hit = reader.hits()?;
+    let mut stated =
+        Stated { face: None, t, range, hit, side, point, normal, barycentric, cos_incidence, stored };
+    let means_miss = |number, error| conventions.means_miss(number, error);
+    if !conventions.ignores_faces {
+        stated.face = reader.faces(&stated, means_miss)?;
+    }
+    if stated.face.is_none() && stated.t.is_none() && stated.range.is_none() && stated.hit.is_none() {
+        let expected =
+            "face.npy, t.npy, range.npy or hit.npy; without one of them it is not said which rays hit";
         let found = match bag_within(folder) {
             Some(bag) => format!("none of them, but a bag: give {bag}"),
             None => match &unread(folder)[..] {
@@ -148,7 +100,8 @@ pub fn read_candidate(
         let fault = Fault::new("folder", found, expected);
         return Err(FileError::Array(fault.in_file(folder)));
     }
-    stated.without_values(|number, error| conventions.means_miss(number, error));
+    stated.without_distances(means_miss);
+    stated.without_values(means_miss);
     // A side is a number of its own before it is one.
     for (ray, number) in sides.iter().flatten().enumerate() {
         if !stated.speaks(ray).1 && conventions.means_miss(*number, error_of(&of_side, ray)) {
@@ -168,7 +121,8 @@ fn refuse_file(path: &Path) -> Result<(), FileError> {
         Some(ending) => format!("a file that ends in .{ending}"),
         None => "a file without an ending".to_string(),
     };
-    let expected = "a folder with face.npy, t.npy or range.npy, or a point cloud: .pcd, .ply or .mcap";
+    let expected =
+        "a folder with face.npy, t.npy, range.npy or hit.npy, or a point cloud: .pcd, .ply or .mcap";
     Err(FileError::Array(Fault::new("candidate", found, expected).in_file(path)))
 }
 
@@ -200,6 +154,52 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
+    /// The faces, where `means_miss` says that a number stands for no hit if nothing else says that the ray hits.
+    fn faces(
+        &self,
+        beside: &Stated,
+        means_miss: impl Fn(f64, f64) -> bool + Copy,
+    ) -> Result<Option<Vec<Option<FaceId>>>, FileError> {
+        // Single precision rounds 4294967295 to 4294967296, which is no face either.
+        let none = [-1.0, f64::from(u32::MAX), f64::from(u32::MAX as f32)];
+        let (numbers, errors) = self.numbers("face", &[])?;
+        let face = |(ray, number): (usize, f64)| match number {
+            number if !number.is_finite() || none.contains(&number) => Ok(None),
+            number
+                if means_miss(number, error_of(&errors, ray))
+                    && !beside.hits_beside_face(ray, means_miss) =>
+            {
+                Ok(None)
+            }
+            number if number.fract() == 0.0 && (0.0..f64::from(u32::MAX)).contains(&number) => {
+                Ok(Some(FaceId(number as u32)))
+            }
+            number => {
+                let expected = "0 or a larger whole number; -1 or 4294967295 for no hit";
+                Err(self.fault("face", format!("cell {ray}"), number.to_string(), expected))
+            }
+        };
+        numbers
+            .map(|numbers| numbers.into_iter().enumerate().map(face).collect::<Result<Vec<_>, _>>())
+            .transpose()
+    }
+
+    /// The truth values: which rays hit.
+    fn hits(&self) -> Result<Option<Vec<bool>>, FileError> {
+        let hit = |(ray, number): (usize, f64)| match number {
+            1.0 => Ok(true),
+            0.0 => Ok(false),
+            _ => {
+                let expected = "1 where the ray hits, 0 where it does not";
+                Err(self.fault("hit", format!("cell {ray}"), number.to_string(), expected))
+            }
+        };
+        let (numbers, _) = self.numbers("hit", &[])?;
+        numbers
+            .map(|numbers| numbers.into_iter().enumerate().map(hit).collect::<Result<Vec<_>, _>>())
+            .transpose()
+    }
+
     fn fault(
         &self,
         name: &str,

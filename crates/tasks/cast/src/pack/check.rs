@@ -300,7 +300,9 @@ fn judge(
         _ => false,
     };
     let is_silent = says_nothing(stated, rays.len()) && comparison.wrong().all(|(_, wrong)| is_lost(&wrong));
-    let why = (!wrong.is_empty() && !is_silent).then(|| {
+    // Truth values alone say too little of each ray: any mistake may explain a few of them.
+    let is_telling = [stated.face.is_some(), stated.t.is_some(), stated.range.is_some()].contains(&true);
+    let why = (!wrong.is_empty() && !is_silent && is_telling).then(|| {
         progress.stage("looking for a mistake that explains the wrong rays");
         let of_cloud = case.as_ref().map(|case| of_cloud(case, exact, sides));
         let stated = (stated, of_cloud.as_ref());

@@ -113,10 +113,12 @@ fn renumber(trial: &mut Trial, by: i64) {
     });
 }
 
-/// Puts another number that is not finite in the place of one that stands for no hit.
+/// Puts another number that is not finite in the place of one that stands for no hit, where nothing else says that the ray hits.
 pub(super) fn misses_at(trial: &mut Trial, number: f64, other: f64) {
-    let miss = |_: usize, distance: &mut f64| {
-        if *distance == number {
+    let is_none = |part: f64, _: f64| part == number;
+    let hits: Vec<bool> = (0..trial.rays.len()).map(|index| trial.stated.hits_but(index, is_none)).collect();
+    let miss = |index: usize, distance: &mut f64| {
+        if *distance == number && !hits[index] {
             *distance = other;
         }
     };
@@ -125,6 +127,18 @@ pub(super) fn misses_at(trial: &mut Trial, number: f64, other: f64) {
     if !other.is_finite() && number.is_finite() {
         trial.stated.without_values(|part, error| (part - number).abs() <= error);
     }
+}
+
+/// Takes a number that stands for no hit away, as the declaration of it does.
+pub(super) fn declare_miss(trial: &mut Trial, number: f64) {
+    let is_none = |part: f64, _: f64| part == number;
+    // Where something else says that the ray hits, the number is a face.
+    let hits: Vec<bool> =
+        (0..trial.rays.len()).map(|index| trial.stated.hits_beside_face(index, is_none)).collect();
+    each(&mut trial.stated.face, |index, face| {
+        *face = face.filter(|face| f64::from(face.0) != number || hits[index]);
+    });
+    misses_at(trial, number, f64::INFINITY);
 }
 
 /// Conventions of the numbers of faces.
@@ -303,32 +317,8 @@ pub(super) const OF_ARGUMENTS: &[Mistake] = &[
 
 /// Numbers that mean no hit.
 pub(super) const OF_MISSES: &[Mistake] = &[
-    Mistake {
-        words: "0 means no hit: declare --miss 0",
-        undo: |trial| {
-            // Where a distance or a point says that the ray hits, face 0 is a face.
-            let stated = &trial.stated;
-            let lengths = stated.t.as_ref().or(stated.range.as_ref());
-            let hits: Option<Vec<bool>> = match (lengths, &stated.point) {
-                (Some(lengths), _) => {
-                    Some(lengths.iter().map(|length| length.is_finite() && *length != 0.0).collect())
-                }
-                (None, Some(points)) => {
-                    Some(points.iter().map(|point| point.is_finite() && *point != DVec3::ZERO).collect())
-                }
-                (None, None) => None,
-            };
-            let is_hit = |index: usize| hits.as_ref().is_some_and(|hits| hits[index]);
-            each(&mut trial.stated.face, |index, face| {
-                *face = face.filter(|face| face.0 != 0 || is_hit(index));
-            });
-            misses_at(trial, 0.0, f64::INFINITY);
-        },
-    },
-    Mistake {
-        words: "-1 means no hit: declare --miss -1",
-        undo: |trial| misses_at(trial, -1.0, f64::INFINITY),
-    },
+    Mistake { words: "0 means no hit: declare --miss 0", undo: |trial| declare_miss(trial, 0.0) },
+    Mistake { words: "-1 means no hit: declare --miss -1", undo: |trial| declare_miss(trial, -1.0) },
 ];
 
 /// Mistakes about what is too near for a sensor.

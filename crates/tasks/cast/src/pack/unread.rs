@@ -3,16 +3,18 @@
 use std::path::Path;
 
 /// Names of arrays that are read.
-const KNOWN: [&str; 8] = ["face", "t", "range", "side", "point", "normal", "barycentric", "cos_incidence"];
+const KNOWN: [&str; 9] =
+    ["face", "t", "range", "hit", "side", "point", "normal", "barycentric", "cos_incidence"];
 
 /// Names that people give to them.
-const OTHER_NAMES: [(&str, &[&str]); 7] = [
+const OTHER_NAMES: [(&str, &[&str]); 8] = [
     (
         "face",
         &["faces", "face_id", "face_index", "primid", "prim_id", "primitive_ids", "tri", "triangle", "index"],
     ),
     ("t", &["t_hit", "thit", "tfar", "distance", "dist", "depth"]),
     ("range", &["ranges", "r"]),
+    ("hit", &["is_hit", "hit_mask", "any", "any_hit", "occluded"]),
     ("point", &["hit_point", "position", "location", "locations", "xyz"]),
     ("normal", &["ng", "primitive_normals"]),
     ("barycentric", &["uv", "uvw", "bary", "weights", "primitive_uvs"]),

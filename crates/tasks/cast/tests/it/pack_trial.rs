@@ -118,6 +118,13 @@ impl Folders {
         self
     }
 
+    /// Adds truth values to the candidate: which rays hit.
+    pub(super) fn with_hits(self, hits: &[bool]) -> Self {
+        let array = npy_of("|b1", &[10, 20], hits.iter().map(|hit| u8::from(*hit)).collect());
+        std::fs::write(self.candidate.path().join("hit.npy"), array).unwrap();
+        self
+    }
+
     pub(super) fn without(self, names: &[&str]) -> Self {
         for name in names {
             std::fs::remove_file(self.candidate.path().join(format!("{name}.npy"))).unwrap();

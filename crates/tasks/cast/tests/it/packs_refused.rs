@@ -157,6 +157,12 @@ fn a_changed_pack_and_arrays_of_another_shape_are_refused() {
     );
     let folders = Folders::right().change("face", |_, _| 5.5);
     assert!(refused(&folders).contains("cell 0: 5.5"), "{}", refused(&folders));
+    for (number, found) in [(2.0, "2"), (f64::NAN, "NaN"), (-1.0, "-1")] {
+        let folders = Folders::right().with_hits(&[true; 200]);
+        let folders = folders.change("hit", |ray, hit| if ray == 3 { number } else { hit });
+        let words = format!("hit.npy: cell 3: {found}; expected 1 where the ray hits, 0 where it does not");
+        assert!(refused(&folders).ends_with(&words), "{}", refused(&folders));
+    }
     let folders = Folders::right();
     write_npy_numbers(folders.pack.path().join("rays.npy"), &[1, 8], &[1.0; 8]).unwrap();
     assert!(refused(&folders).contains("SHA-256"), "{}", refused(&folders));

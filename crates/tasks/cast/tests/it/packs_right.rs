@@ -43,7 +43,7 @@ fn a_right_program_passes_whatever_it_gives() {
     let folders = [nothing.pack.path(), nothing.candidate.path()];
     let error =
         check_ray_pack(folders[0], folders[1], Precision::F64, CandidateConventions::default(), &Silent);
-    assert!(error.unwrap_err().to_string().contains("expected face.npy, t.npy or range.npy"));
+    assert!(error.unwrap_err().to_string().contains("expected face.npy, t.npy, range.npy or hit.npy"));
 }
 
 #[test]
@@ -79,6 +79,84 @@ fn a_declared_number_is_no_face_of_rays_that_hit_and_is_rounded_as_it_is_stored(
         assert!(passes(miss), "{miss}, half {is_half}");
         assert!(!passes(miss + unit), "a unit beside {miss}, half {is_half}");
     }
+}
+
+/// A number for no hit that is also the distance of a hit.
+#[test]
+fn a_declared_number_is_a_distance_of_rays_that_hit() {
+    let right = || Folders::right().without(&["side", "point", "normal", "barycentric", "cos_incidence"]);
+    let [t, range] = ["t", "range"].map(|name| right().of(name));
+    // Every twentieth ray goes through a corner, which rounding may miss.
+    let hit = (0..t.len()).find(|&ray| ray % 20 != 0 && t[ray].is_finite() && t[ray] != range[ray]).unwrap();
+    let hits: Vec<bool> = t.iter().map(|t| t.is_finite()).collect();
+    for miss in [t[hit], range[hit]] {
+        let with = || {
+            let of = move |_: usize, length: f64| if length.is_finite() { length } else { miss };
+            right().change("t", of).change("range", of)
+        };
+        let wrong = |folders: &Folders| -> Vec<usize> {
+            let declared = CandidateConventions { miss: Some(miss), ..CandidateConventions::default() };
+            folders.check_by(Precision::F64, declared).comparison.wrong().map(|(ray, _)| ray).collect()
+        };
+        // A face says that the ray hits, and so does the other distance.
+        assert_eq!(wrong(&with()), [0; 0]);
+        assert_eq!(wrong(&with().without(&["face"])), [0; 0]);
+        let other = if miss == t[hit] { "range" } else { "t" };
+        assert_eq!(wrong(&with().without(&[other])), [0; 0]);
+        // Truth values say it as well; the distance alone says that nothing is hit.
+        assert_eq!(wrong(&with().without(&["face", other]).with_hits(&hits)), [0; 0]);
+        assert_eq!(wrong(&with().without(&["face", other])), [hit]);
+        // A miss whose face says so.
+        let none = with().change("face", |ray, face| if ray == hit { -1.0 } else { face });
+        assert_eq!(wrong(&none), [hit]);
+        // The number is told where it is not declared.
+        let why = with().check().why.expect("a reason");
+        assert_eq!(why, format!("100.0000 % agree if {miss} means no hit: declare --miss {miss}"));
+    }
+}
+
+/// Truth values beside other arrays, and alone.
+#[test]
+fn hits_are_judged_alone_and_beside_others() {
+    let all = ["side", "point", "normal", "barycentric", "cos_incidence"];
+    let t = Folders::right().of("t");
+    let hits: Vec<bool> = t.iter().map(|t| t.is_finite()).collect();
+    let beside = || Folders::right().with_hits(&hits);
+    let alone = || beside().without(&all).without(&["face", "t", "range"]);
+    assert!(beside().check().passes() && alone().check().passes());
+    assert_eq!(alone().check().unread, [""; 0]);
+    // Numbers of any type, 0 and 1.
+    assert!(alone().change("hit", |_, hit| hit).check().passes());
+    assert!(alone().change("hit", |_, hit| hit).store(false, 0, &["hit"]).check().passes());
+    for ray in [hits.iter().position(|hit| *hit).unwrap(), hits.iter().position(|hit| !*hit).unwrap()] {
+        let mut other = hits.clone();
+        other[ray] ^= true;
+        for folders in [beside().with_hits(&other), alone().with_hits(&other)] {
+            let checked = folders.check();
+            let wrong: Vec<usize> = checked.comparison.wrong().map(|(ray, _)| ray).collect();
+            assert_eq!((wrong, checked.why), (vec![ray], None));
+        }
+        let text = beside().with_hits(&other).check().document().screen();
+        let words = match hits[ray] {
+            true => "face says that something is hit, and hit is 0",
+            false => "face says that nothing is hit, and hit is 1",
+        };
+        assert!(text.contains(words), "{text}");
+    }
+    // One truth value of a ray explains little: no mistake is told, but that nothing is hit.
+    let inverted: Vec<bool> = hits.iter().map(|hit| !hit).collect();
+    assert_eq!(alone().with_hits(&inverted).check().why, None);
+    let why = alone().with_hits(&[false; 200]).check().why;
+    assert_eq!(why.as_deref(), Some("every ray is a miss: nothing at all is hit"));
+    // Face 0 is a face where the truth values say so, and no hit elsewhere.
+    let zero = || {
+        let faces = beside().without(&all).without(&["t", "range"]);
+        faces.change("face", |ray, face| if hits[ray] { face } else { 0.0 })
+    };
+    assert!(zero().of("face").contains(&0.0));
+    let declared = CandidateConventions { miss: Some(0.0), ..CandidateConventions::default() };
+    assert!(zero().check_by(Precision::F64, declared).passes());
+    zero().expect_why(&["100.0000 %", "if 0 means no hit: declare --miss 0"]);
 }
 
 /// Rays that end before anything is there, and just upon it.

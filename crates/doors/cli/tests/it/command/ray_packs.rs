@@ -73,7 +73,7 @@ fn what_is_no_answer_to_rays_is_told_by_its_kind() {
         ("cloud.xyz", "cloud.xyz: candidate: a file that ends in .xyz; expected a folder"),
         (
             "t.npy",
-            "t.npy: candidate: one array; expected a folder with face.npy, t.npy or range.npy, or a point cloud",
+            "t.npy: candidate: one array; expected a folder with face.npy, t.npy, range.npy or hit.npy, or a point cloud",
         ),
         ("pack/raypack.json", "candidate: the list of a pack of rays; expected a folder"),
         ("gone", "gone: cannot read"),
