@@ -126,6 +126,14 @@ impl Stated {
         })
     }
 
+    /// Whether two rays have the same answer, bit by bit.
+    pub(crate) fn is_same_answer(&self, ray: usize, other: usize) -> bool {
+        let of_face = self.face.as_ref().is_none_or(|faces| faces[ray] == faces[other]);
+        let of_hit = self.hit.as_ref().is_none_or(|hits| hits[ray] == hits[other]);
+        let bits = |value: CastValue, ray: usize| Some(self.part(value, ray)?.map(f64::to_bits));
+        of_face && of_hit && CastValue::ALL.into_iter().all(|value| bits(value, ray) == bits(value, other))
+    }
+
     /// Makes distances +Inf that are not numbers, and of rays that do not hit otherwise those that stand for no hit.
     pub(crate) fn without_distances(&mut self, is_none: impl Fn(f64, f64) -> bool) {
         let count = [&self.t, &self.range].into_iter().flatten().map(Vec::len).next().unwrap_or(0);

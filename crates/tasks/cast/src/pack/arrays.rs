@@ -14,6 +14,9 @@ const MAX_LOOKED: usize = 400;
 /// Misses that have one number, at least: of fewer it is no constant.
 const MIN_MISSES: usize = 3;
 
+/// Different answers that an order moves, at least. Fewer are exchanged by many orders alike.
+const MIN_DIFFERENT: usize = 3;
+
 /// Orders in which the answers may lie, other than that of the rays. `stated` are the answers to all rays, of this shape.
 pub(super) fn orders<'a>(stated: &'a Stated, shape: &[u64]) -> Vec<Extra<'a>> {
     let all: usize = shape.iter().product::<u64>() as usize;
@@ -22,6 +25,9 @@ pub(super) fn orders<'a>(stated: &'a Stated, shape: &[u64]) -> Vec<Extra<'a>> {
     let mut list = Vec::new();
     // The place of the answer to each ray.
     let mut add = |words: &str, place: Box<dyn Fn(usize) -> usize + 'a>| {
+        if !moves_several(stated, all, &place) {
+            return;
+        }
         let undo = move |trial: &mut Trial| {
             let places: Vec<usize> = trial.indices.iter().map(|&index| place(index)).collect();
             trial.stated = stated.some_of(&places);
@@ -64,6 +70,21 @@ pub(super) fn orders<'a>(stated: &'a Stated, shape: &[u64]) -> Vec<Extra<'a>> {
         }
     }
     list
+}
+
+/// Whether an order moves several different answers. Of fewer it is the same as an exchange of two answers, or of two parts of equal
+/// ones, and nothing says which of these it was.
+fn moves_several(stated: &Stated, all: usize, place: &dyn Fn(usize) -> usize) -> bool {
+    let mut different: Vec<usize> = Vec::new();
+    for ray in (0..all).filter(|&ray| !stated.is_same_answer(ray, place(ray))) {
+        if different.iter().all(|&other| !stated.is_same_answer(ray, other)) {
+            different.push(ray);
+            if different.len() == MIN_DIFFERENT {
+                return true;
+            }
+        }
+    }
+    false
 }
 
 /// A vector by the components of another one, each with its sign.

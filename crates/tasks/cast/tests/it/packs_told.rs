@@ -43,6 +43,46 @@ fn answers_in_another_order_are_named() {
     assert!(!checked.passes() && checked.why.is_none(), "{:?}", checked.why);
 }
 
+/// What a program is told that gives t of rays from these heights above a face, in another order.
+fn laid_otherwise(heights: &[f64], from: impl Fn(usize) -> usize) -> Option<String> {
+    let text: String = heights
+        .iter()
+        .enumerate()
+        .map(|(k, up)| format!("{},0.125,{up},0,0,-1\n", k as f64 * 0.01))
+        .collect();
+    let rays = rays_from_bytes(text.as_bytes(), "here".as_ref()).unwrap();
+    let [pack, candidate] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+    write_ray_pack(pack.path(), (&cube(), &rays, Sides::Both), &source(), &Silent).unwrap();
+    let t: Vec<f64> = (0..heights.len()).map(|k| heights[from(k)] - 1.0).collect();
+    write_npy_numbers(candidate.path().join("t.npy"), &[t.len() as u64], &t).unwrap();
+    let conventions = CandidateConventions::default();
+    let checked =
+        check_ray_pack(pack.path(), candidate.path(), Precision::F64, conventions, &Silent).unwrap();
+    assert!(!checked.passes());
+    checked.why
+}
+
+#[test]
+fn answers_that_are_exchanged_are_no_order() {
+    let reversed = "100.0000 % agree if answers run from the last ray to the first";
+    let all = 40;
+    let distinct: Vec<f64> = (0..all).map(|k| 3.0 + 0.25 * ((k * 7) % all) as f64).collect();
+    assert_eq!(laid_otherwise(&distinct, |k| all - 1 - k).as_deref(), Some(reversed));
+    assert_eq!(laid_otherwise(&distinct, |k| (k + all / 2) % all), None);
+    // Two answers among equal ones: as a whole they are also the reverse.
+    let exchange = |k: usize| if [5, all - 6].contains(&k) { all - 1 - k } else { k };
+    let mut equal = vec![3.0; all];
+    (equal[5], equal[all - 6]) = (4.25, 6.5);
+    assert_eq!(laid_otherwise(&equal, exchange), None);
+    assert_eq!(laid_otherwise(&equal, |k| all - 1 - k), None);
+    // Halves of equal answers.
+    let halves: Vec<f64> = (0..all).map(|k| if k < all / 2 { 3.25 } else { 7.5 }).collect();
+    assert_eq!(laid_otherwise(&halves, |k| (k + all / 2) % all), None);
+    // Three different answers that move are enough.
+    let three: Vec<f64> = (0..all).map(|k| [3.25, 4.5, 7.75][(k * k + k / 3) % 3]).collect();
+    assert_eq!(laid_otherwise(&three, |k| all - 1 - k).as_deref(), Some(reversed));
+}
+
 #[test]
 fn all_axes_are_named() {
     let turned = |folders: Folders, name: &str, order: [usize; 3], signs: [f64; 3]| {
