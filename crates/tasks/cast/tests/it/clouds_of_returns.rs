@@ -1,152 +1,12 @@
 //! Clouds of several returns against a pack of beams with a width: right ones pass, exchanged, other and missing returns are told.
 
-use std::path::{Path, PathBuf};
-
 use glam::DVec3;
-use raypencil_cast::{
-    BeamReturns, CastSource, CloudFrame, PcdData, Questions, RayPackChecked, cast, check_ray_pack,
-    write_scan_pack, write_set,
-};
-use raypencil_scene::pattern::{Cone, EchoLight, Keep, Mounting, PatternRays, Returns, Spinning};
+use raypencil_cast::{BeamReturns, CastSource, PcdData, Questions, cast, write_set};
+use raypencil_scene::pattern::{Cone, EchoLight, Keep, Mounting, PatternRays, Returns};
 use raypencil_scene::{CastRay, NamedRaySet, Precision, Sides, Silent, Triangles};
 
-use super::cloud_trial::{bend, expect, head, of_frame, room, still};
-
-const SENSOR: CloudFrame = CloudFrame::Sensor;
-
-/// A point of a return as a simulator writes it.
-#[derive(Debug, Clone, Copy)]
-struct Point {
-    place: DVec3,
-    ring: u16,
-    time: f64,
-    number: u32,
-}
-
-/// What a cloud's file has beside x, y and z.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Fields {
-    None,
-    /// ring and time.
-    Keys,
-    /// These and the number of the return.
-    Numbers,
-}
-
-/// The head of 16 channels with beams of 30 mrad, 1 + 6 rays each: at 5 m a beam is 15 cm wide.
-fn set_of(mounting: &Mounting, keep: Keep) -> NamedRaySet {
-    turn_of(20, mounting, keep)
-}
-
-/// A turn of that head in so many steps.
-fn turn_of(steps: u64, mounting: &Mounting, keep: Keep) -> NamedRaySet {
-    let head = Spinning { steps, azimuth_step_deg: -360.0 / steps as f64, ..head() };
-    let cone = Cone { divergence_rad: 0.03, rings: 1 };
-    let beams = cone.spread(&head.rays("rays").expect("rays"), "cone").expect("a cone");
-    let beams = PatternRays { returns: Some(Returns { keep, separation_m: 0.5 }), ..beams };
-    NamedRaySet::new("head", mounting.place(beams, "rays").expect("poses"), Sides::Both).expect("a set")
-}
-
-/// A pack of beams.
-struct Trial {
-    folder: tempfile::TempDir,
-    set: NamedRaySet,
-    returns: BeamReturns,
-    mesh: Triangles,
-}
-
-impl Trial {
-    fn new(mesh: Triangles, set: NamedRaySet) -> Self {
-        let folder = tempfile::tempdir().expect("a folder");
-        let pack = folder.path().join("pack");
-        write_scan_pack(&pack, (&mesh, &set, Sides::Both), &CastSource::default(), &Silent).expect("a pack");
-        let answers = cast(&mesh, set.set.rays(), Sides::Both, Questions::default(), &Silent);
-        let returns = BeamReturns::of(&answers, &set).expect("returns");
-        Self { folder, set, returns, mesh }
-    }
-
-    fn of_room(mounting: &Mounting, keep: Keep) -> Self {
-        Self::new(room(), set_of(mounting, keep))
-    }
-
-    /// The points of returns in the sensor's frame, so many places a beam. `place` gives the point by the leading ray and the range.
-    fn points(&self, returns: &BeamReturns, place: &dyn Fn(&CastRay, f64, f64) -> DVec3) -> Vec<Point> {
-        let elevations = self.set.elevations_deg.as_ref().expect("a head");
-        let times = self.set.times.as_ref().expect("times");
-        let of = |(index, told): (usize, &Option<raypencil_cast::BeamReturn>)| {
-            let beam = index / returns.most();
-            let channel = beam % elevations.len();
-            let ring = elevations.iter().filter(|other| **other < elevations[channel]).count() as u16;
-            let time = times[beam * returns.rays_of_beam()];
-            let pose = self.set.mounting.at(time).expect("a pose").inverse();
-            let place = told.as_ref().map_or(DVec3::NAN, |told| {
-                pose * place(&self.set.set.rays()[told.ray], told.range, told.mean_range)
-            });
-            Point { place, ring, time, number: told.as_ref().map_or(0, |told| told.number) }
-        };
-        returns.told().iter().enumerate().map(of).collect()
-    }
-
-    fn right(&self) -> Vec<Point> {
-        self.points(&self.returns, &|ray, range, _| ray.origin + ray.direction * range)
-    }
-
-    /// The points that another rule would tell.
-    fn by(&self, keep: Keep) -> Vec<Point> {
-        let set = set_of(&self.set.mounting, keep);
-        let answers = cast(&self.mesh, set.set.rays(), Sides::Both, Questions::default(), &Silent);
-        let returns = BeamReturns::of(&answers, &set).expect("returns");
-        self.points(&returns, &|ray, range, _| ray.origin + ray.direction * range)
-    }
-
-    fn write(&self, points: &[Point], fields: Fields) -> PathBuf {
-        let path = self.folder.path().join("theirs.pcd");
-        let (names, sizes, kinds) = match fields {
-            Fields::None => ("", "", ""),
-            Fields::Keys => (" ring time", " 2 4", " U F"),
-            Fields::Numbers => (" ring time return", " 2 4 1", " U F U"),
-        };
-        let count = points.len();
-        let mut bytes = format!(
-            "VERSION 0.7\nFIELDS x y z{names}\nSIZE 4 4 4{sizes}\nTYPE F F F{kinds}\nWIDTH {count}\nHEIGHT 1\nPOINTS {count}\nDATA binary\n"
-        )
-        .into_bytes();
-        for point in points {
-            point.place.to_array().iter().for_each(|part| bytes.extend((*part as f32).to_le_bytes()));
-            if fields != Fields::None {
-                bytes.extend(point.ring.to_le_bytes());
-                bytes.extend((point.time as f32).to_le_bytes());
-            }
-            if fields == Fields::Numbers {
-                bytes.push(point.number as u8);
-            }
-        }
-        std::fs::write(&path, bytes).expect("a file");
-        path
-    }
-
-    fn check(&self, file: &Path, precision: Precision) -> Result<RayPackChecked, String> {
-        let conventions = of_frame(SENSOR);
-        check_ray_pack(&self.folder.path().join("pack"), file, precision, conventions, &Silent)
-            .map_err(|error| error.to_string())
-    }
-
-    /// All places in their order, and without the empty ones by ring and time, and by the numbers too.
-    fn judge_all(&self, points: &[Point]) -> [RayPackChecked; 3] {
-        let dense: Vec<Point> = points.iter().copied().filter(|point| point.place.is_finite()).collect();
-        [(Fields::None, points), (Fields::Keys, &dense), (Fields::Numbers, &dense)]
-            .map(|(fields, points)| self.check(&self.write(points, fields), Precision::F64).expect("a check"))
-    }
-
-    #[track_caller]
-    fn expect_why(&self, points: &[Point], words: &str) {
-        for checked in self.judge_all(points) {
-            expect(&checked, words);
-        }
-    }
-}
-
-const RULES: [Keep; 5] = [Keep::First, Keep::Strongest, Keep::Last, Keep::UpTo(2), Keep::UpTo(3)];
+use super::beam_trial::{Fields, Point, RULES, Trial, set_of, turn_of};
+use super::cloud_trial::{bend, expect, room, still};
 
 #[test]
 fn right_returns_pass_by_order_by_keys_and_by_numbers() {
@@ -275,69 +135,6 @@ fn returns_in_another_order_and_repeated_ones_are_told() {
 }
 
 #[test]
-fn wrong_numbers_of_returns_are_wrong() {
-    let numbered = |keep: Keep, number: &dyn Fn(usize, u32) -> u32| {
-        let trial = Trial::of_room(&still(), keep);
-        let right: Vec<Point> = trial.right().into_iter().filter(|one| one.place.is_finite()).collect();
-        let of = |(k, one): (usize, &Point)| Point { number: number(k, one.number), ..*one };
-        let points: Vec<Point> = right.iter().enumerate().map(of).collect();
-        let others = right.iter().zip(&points).filter(|(a, b)| a.number != b.number).count();
-        (trial.check(&trial.write(&points, Fields::Numbers), Precision::F64).expect("a check"), others)
-    };
-    for keep in RULES {
-        for all in [0, 1, 7] {
-            let (checked, others) = numbered(keep, &|_, _| all);
-            assert_eq!(checked.comparison.counts().wrong, 0);
-            assert_eq!(checked.passes(), others == 0, "{keep:?}, all {all}");
-            let text = checked.document().screen();
-            let cloud = checked.cloud.expect("a cloud");
-            assert_eq!(cloud.wrong_numbers.len(), others, "{keep:?}, all {all}");
-            if others == 0 {
-                assert_eq!((keep, all), (Keep::First, 1));
-                continue;
-            }
-            let why = checked.why.expect("a reason");
-            assert!(
-                why.contains(&format!("if all points have the number of return {all}: it counts")),
-                "{why}"
-            );
-            let told = format!("number of return of {others} points is another");
-            assert!(text.to_lowercase().contains(&told), "{text}");
-        }
-    }
-    // One of them alone, and no reason.
-    let (checked, _) = numbered(Keep::UpTo(2), &|k, number| if k == 9 { 3 } else { number });
-    assert!(!checked.passes() && checked.why.is_none());
-    assert_eq!(checked.cloud.expect("a cloud").wrong_numbers.len(), 1);
-}
-
-/// Points a hundredth too far, and numbers that are wrong beside them.
-#[test]
-fn wrong_numbers_of_returns_are_told_beside_wrong_points() {
-    let why = |number: &dyn Fn(usize, u32) -> u32| {
-        let trial = Trial::of_room(&still(), Keep::UpTo(2));
-        let right: Vec<Point> = trial.right().into_iter().filter(|one| one.place.is_finite()).collect();
-        let points = right.iter().enumerate();
-        let of = |(k, one): (usize, &Point)| Point {
-            place: one.place * 1000.0,
-            number: number(k, one.number),
-            ..*one
-        };
-        let points: Vec<Point> = points.map(of).collect();
-        let checked = trial.check(&trial.write(&points, Fields::Numbers), Precision::F64).expect("a check");
-        assert!(!checked.passes());
-        checked.why.expect("a reason")
-    };
-    let lengths = "100.0000 % agree if lengths are in thousandths of the mesh's unit";
-    assert_eq!(why(&|_, number| number), lengths);
-    let numbers =
-        "all points have the number of return 7: it counts the returns of a footprint, the nearest is 1";
-    assert_eq!(why(&|_, _| 7), format!("{lengths}, and {numbers}"));
-    let one = why(&|k, number| if k == 9 { 3 } else { number });
-    assert_eq!(one, format!("{lengths}; something else is wrong, too"));
-}
-
-#[test]
 fn more_points_than_returns_are_told_as_such() {
     let trial = Trial::of_room(&still(), Keep::First);
     let refused = |points: &[Point]| {
@@ -393,24 +190,6 @@ fn what_right_beams_contradict_is_not_told() {
     points[seconds[3]].place = DVec3::NAN;
     for checked in trial.judge_all(&points) {
         assert_eq!((checked.comparison.counts().wrong, checked.why), (1, None));
-    }
-}
-
-#[test]
-fn numbers_of_returns_from_0_are_told() {
-    for keep in [Keep::UpTo(2), Keep::UpTo(3)] {
-        let trial = Trial::of_room(&still(), keep);
-        // Of three returns two may be told, with the numbers 1 and 3: from 0 they are 0 and 2.
-        let from = |by: i64| -> Vec<Point> {
-            let of = |point: Point| Point { number: (i64::from(point.number) + by) as u32, ..point };
-            trial.right().into_iter().filter(|point| point.place.is_finite()).map(of).collect()
-        };
-        let check = |points: &[Point]| {
-            trial.check(&trial.write(points, Fields::Numbers), Precision::F64).expect("a check")
-        };
-        expect(&check(&from(-1)), "if the numbers of returns count from 0: the nearest is 1");
-        let from_two = check(&from(1));
-        assert!(!from_two.passes() && from_two.why.is_none(), "{:?}", from_two.why);
     }
 }
 

@@ -1,11 +1,13 @@
 //! The tests of this crate by its public items, one program together with its unit tests.
 
 mod bags;
+mod beam_trial;
 mod bounds;
 mod cloud;
 mod cloud_trial;
 mod clouds_at_limits;
 mod clouds_of_others;
+mod clouds_of_return_numbers;
 mod clouds_of_returns;
 mod clouds_of_sensors;
 mod columns;
