@@ -112,8 +112,11 @@ fn returns_in_another_order_and_repeated_ones_are_told() {
         .collect();
     let [by_order, by_keys, by_numbers] = trial.judge_all(&numbers);
     assert!(by_order.passes() && by_keys.passes());
-    // Of three returns two are told, and their numbers may be 1 and 3: they are exchanged all the same.
-    expect(&by_numbers, "if the numbers of returns count from the farthest: the nearest is 1");
+    // Of three returns two are told: from the farthest 1 and 2 would be 3 and 2.
+    expect(
+        &by_numbers,
+        "if the numbers of the told returns of a beam are exchanged: the nearest has the least",
+    );
     let again: Vec<Point> = (0..right.len())
         .map(|k| if right[k].place.is_finite() || k % 2 == 0 { right[k] } else { right[k - 1] })
         .collect();

@@ -58,8 +58,8 @@ pub(super) struct Asked<'a> {
     pub(super) scan: Option<&'a Scan>,
     /// Places of each beam: 1, or one for each return that may be told. They follow each other in `rays`.
     pub(super) places: usize,
-    /// Number of the return of each place; 0 for a place without one. Empty where beams have one place.
-    pub(super) numbers: &'a [u32],
+    /// Number of the return of each place, by which points are told; NaN for a place without one. Empty where rays stand for themselves.
+    pub(super) numbers: &'a [f64],
 }
 
 impl Asked<'_> {
@@ -192,11 +192,8 @@ impl Asked<'_> {
                 assigned.strays.push(point);
                 continue;
             };
-            // Places without a return have no number.
-            let has_number = |&place: &usize| {
-                self.numbers[place] != 0
-                    && numbers.is_some_and(|of| of.values[point] == f64::from(self.numbers[place]))
-            };
+            let has_number =
+                |&place: &usize| numbers.is_some_and(|of| of.values[point] == self.numbers[place]);
             match self.places_of(beam).find(has_number).map(|place| &mut assigned.point_of[place]) {
                 Some(place @ None) => *place = Some(point),
                 _ => others.push((beam, point)),
@@ -239,6 +236,20 @@ impl Assigned {
     /// Whether so few points belong to no ray that the others can be judged.
     pub(super) fn is_clear(&self, points: usize) -> bool {
         self.strays.len() * 100 <= points * MAX_STRAY_PERCENT
+    }
+
+    /// Whether nearly all points have these numbers of returns, one for each place.
+    pub(super) fn has_numbers(
+        &self,
+        numbers: &[f64],
+        (column, is_point): (&CloudColumn, &[bool]),
+        points: usize,
+    ) -> bool {
+        let placed = self.point_of.iter().zip(numbers);
+        let others = placed.filter(|(point, number)| {
+            point.is_some_and(|point| is_point[point] && column.values[point] != **number)
+        });
+        others.count() * 100 <= points * MAX_STRAY_PERCENT
     }
 
     /// Whether another rule lays so few of these points otherwise.

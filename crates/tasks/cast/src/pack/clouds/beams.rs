@@ -62,7 +62,7 @@ impl BeamQuestion {
             |keep: Keep| BeamReturns::of_first(&first, Returns { keep, ..*wanted }, (weights, echo));
         let returns = told_by(wanted.keep);
         let numbers = returns.told().iter().map(|told| told.map_or(0, |told| told.number)).collect();
-        let others = others(wanted.keep, &told_by);
+        let others = others(wanted.keep, weights.len(), &told_by);
         let beams = Beams {
             wanted: *wanted,
             weights: weights.clone(),
@@ -92,8 +92,8 @@ impl BeamQuestion {
     }
 }
 
-/// The rules by which sensors tell returns, but the one that is asked for.
-fn others(keep: Keep, told_by: &dyn Fn(Keep) -> BeamReturns) -> Vec<OtherReturns> {
+/// The rules by which sensors tell returns, but the one that is asked for. Beams have so many rays, and not more returns.
+fn others(keep: Keep, rays: usize, told_by: &dyn Fn(Keep) -> BeamReturns) -> Vec<OtherReturns> {
     let of = |keep: Keep| -> Vec<Vec<BeamReturn>> {
         let returns = told_by(keep);
         returns.told().chunks(returns.most()).map(|told| told.iter().flatten().copied().collect()).collect()
@@ -138,6 +138,16 @@ fn others(keep: Keep, told_by: &dyn Fn(Keep) -> BeamReturns) -> Vec<OtherReturns
             list.push(OtherReturns { words, told });
         }
     }
+    if most > 1 {
+        let all = of(Keep::UpTo(rays as u64));
+        let count = |told: &[BeamReturn]| told.len().min(most as usize);
+        let first = all.iter().map(|told| told[..count(told)].to_vec()).collect();
+        let last = all.iter().map(|told| told[told.len() - count(told)..].to_vec()).collect();
+        for (which, told) in [("first", first), ("last", last)] {
+            let words = format!("each beam has its {most} {which} returns: {asked}");
+            list.push(OtherReturns { words, told });
+        }
+    }
     for fewer in 2..most {
         let words = format!("each beam has its {fewer} strongest returns: {asked}");
         list.push(OtherReturns { words, told: of(Keep::UpTo(fewer)) });
@@ -159,6 +169,16 @@ impl Beams {
     /// Number of the return of each place; 0 for none.
     pub(in crate::pack) fn numbers(&self) -> &[u32] {
         &self.numbers
+    }
+
+    /// The same, but NaN for none.
+    pub(in crate::pack) fn told_numbers(&self) -> Vec<f64> {
+        self.numbers.iter().map(|&number| if number == 0 { f64::NAN } else { f64::from(number) }).collect()
+    }
+
+    /// Number of returns of a beam, told or not.
+    pub(in crate::pack) fn returns_of(&self, beam: usize) -> u32 {
+        self.returns.footprints()[beam].returns
     }
 
     /// What sensors tell in place of what is asked.

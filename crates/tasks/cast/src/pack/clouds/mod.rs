@@ -5,6 +5,7 @@
 //! assign     the ray of each point: by channel and time, by order, or by direction
 //! keys       what the fields of a cloud say of these: channel and time
 //! beams      the returns of beams with a width, a ray for each
+//! numbers    by which rules simulators count them
 //! rules      which rule it is, and which other ones a mistake may have followed
 //! read       a cloud, its points on their rays, and what is stated by them
 //! turn       how a spinning head turns, from its rays and their times
@@ -23,6 +24,7 @@ mod keys;
 mod limits;
 mod list;
 mod mistakes;
+mod numbers;
 mod places;
 mod read;
 mod rules;

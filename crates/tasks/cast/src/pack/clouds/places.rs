@@ -67,28 +67,17 @@ pub(super) fn of_order<'a>(list: &mut List<'a>, case: &'a CloudCase<'a>, scan: &
 
 /// Returns of beams with a width.
 pub(super) fn of_returns<'a>(list: &mut List<'a>, case: &'a CloudCase<'a>, beams: &'a Beams) {
-    let by_number = case.least_number.is_some() && beams.places() > 1;
+    let by_number = case.has_numbers && beams.places() > 1;
     if beams.places() > 1 {
-        // Where the point of a return stands, by the number of returns of its beam and that of the return, both from 0. Number 0 has no
-        // place: its point is in the one that is left.
-        type Stands = fn(told: usize, at: usize) -> usize;
-        let from_farthest: Stands = |told, at| told - 1 - at;
-        let from_zero: Stands = |told, at| (at + told - 1) % told;
-        let found = match case.least_number {
-            None => Some(("the returns of a beam run from the farthest to the nearest", from_farthest)),
-            Some(1.0) => {
-                Some(("the numbers of returns count from the farthest: the nearest is 1", from_farthest))
-            }
-            Some(0.0) => Some(("the numbers of returns count from 0: the nearest is 1", from_zero)),
-            Some(_) => None,
-        };
-        if let Some((words, stands)) = found {
+        // With numbers it is their rule that lays the points: see `numbers`.
+        if !by_number {
+            let words = "the returns of a beam run from the farthest to the nearest";
             list.add(words, true, move |trial| {
                 let Some(cloud) = &mut trial.cloud else { return };
                 for (k, &place) in trial.indices.iter().enumerate() {
                     let (told, at) = beams.told_of_beam(place);
                     if at < told {
-                        let other = place - at + stands(told, at);
+                        let other = place - at + (told - 1 - at);
                         (cloud.raw[k], cloud.error[k]) = (case.part.raw[other], case.part.error[other]);
                     }
                 }

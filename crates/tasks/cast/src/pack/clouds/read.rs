@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use raypencil_files::FileError;
-use raypencil_mesh_io::{Cloud, CloudColumn, CloudStorage};
+use raypencil_mesh_io::{Cloud, CloudStorage};
 use raypencil_scene::CastRay;
 
 use super::assign::{Asked, Assigned, BY_DIRECTION, Order, number_of_return, too_many, unclear};
@@ -12,6 +12,7 @@ use super::beams::Beams;
 use super::file;
 use super::fit::rounded;
 use super::keys::{BY_RING, Clock, Keys, is_key, usual_ring};
+use super::numbers::{NUMBER_RULES, wrong_numbers};
 use super::rules::{Places, assigned, backwards, by_direction, rings, swapped};
 use crate::cloud::CloudFrame;
 use crate::comparison::{Stated, StoredErrors};
@@ -82,8 +83,8 @@ pub(in crate::pack) struct CloudCase<'a> {
     pub(in crate::pack) scan: Option<&'a Scan>,
     /// What is known of the returns of beams; `None`: rays stand for themselves.
     pub(in crate::pack) beams: Option<&'a Beams>,
-    /// The least number of a return that the file has; `None`: it has no such numbers.
-    pub(in crate::pack) least_number: Option<f64>,
+    /// Whether its points have numbers of returns.
+    pub(in crate::pack) has_numbers: bool,
     pub(in crate::pack) frame: CloudFrame,
     pub(in crate::pack) part: CloudPart,
     pub(in crate::pack) facts: CloudFacts,
@@ -136,8 +137,8 @@ pub(in crate::pack) fn read_cloud_of<'a>(
     let real = is_point.iter().filter(|&&is_point| is_point).count();
     let places = beams.map_or(1, Beams::places);
     let shape_of_beams = if places > 1 { &shape[..shape.len() - 1] } else { shape };
-    let numbers = beams.map_or(&[][..], Beams::numbers);
-    let asked = Asked { shape: shape_of_beams, rays, scan, places, numbers };
+    let numbers = beams.map_or_else(Vec::new, Beams::told_numbers);
+    let asked = Asked { shape: shape_of_beams, rays, scan, places, numbers: &numbers };
     let usual = usual_ring(&cloud);
     let by_direction = || by_direction(&asked, rays, (&points, &is_point), frame);
     let angle = |point: usize, ray: usize| {
@@ -194,6 +195,23 @@ pub(in crate::pack) fn read_cloud_of<'a>(
         otherwise.extend(of(other).map(|part| (exchanged_words(pair), part)));
     }
     let by_order = |(words, order)| (words, asked.by_order(&cloud, &is_point, order));
+    if let Some(beams) = beams
+        && places > 1
+        && let Some(column) = number_of_return(&cloud)
+        && found.by != BY_DIRECTION
+    {
+        for rule in &NUMBER_RULES {
+            let numbers = rule.numbers(beams);
+            let asked = Asked { numbers: &numbers, ..asked };
+            let other = match order {
+                Some(order) => asked.by_order(&cloud, &is_point, order),
+                None => asked.by_keys(&cloud, &is_point, keys),
+            };
+            // Points whose numbers are none of the rule's take the places that are left: such a rule explains nothing.
+            let other = other.filter(|other| other.has_numbers(&numbers, (column, &is_point), real));
+            otherwise.extend(with((rule.words, other)));
+        }
+    }
     let (mut of_backwards, mut directed) = (Vec::new(), None);
     match order {
         // A list without an order of its own is held to none.
@@ -222,14 +240,11 @@ pub(in crate::pack) fn read_cloud_of<'a>(
     let of_usual = asked.by_keys(&cloud, &is_point, Keys::of(usual));
     let wrong_keys = of_usual.as_ref().map_or_else(Vec::new, |of_usual| said.unlike(&found, of_usual));
     let keys_why = if wrong_keys.is_empty() { None } else { said.why(&found, &exchanged) };
-    let (numbered, wrong_numbers, numbers_why) = match number_of_return(&cloud) {
-        Some(column) => wrong_numbers(&found, numbers, (column, &is_point)),
-        None => (0, Vec::new(), None),
+    let of_returns = number_of_return(&cloud);
+    let (numbered, wrong_numbers, numbers_why) = match (of_returns, beams) {
+        (Some(column), Some(beams)) => wrong_numbers(&found, beams, (column, &is_point)),
+        _ => (0, Vec::new(), None),
     };
-    let least_number = number_of_return(&cloud).and_then(|column| {
-        let numbers = (0..is_point.len()).filter(|&point| is_point[point]).map(|point| column.values[point]);
-        numbers.min_by(f64::total_cmp)
-    });
     let facts = CloudFacts {
         wrong_keys,
         keys_why,
@@ -249,7 +264,7 @@ pub(in crate::pack) fn read_cloud_of<'a>(
         rays,
         scan,
         beams,
-        least_number,
+        has_numbers: of_returns.is_some(),
         frame,
         part,
         facts,
@@ -258,36 +273,6 @@ pub(in crate::pack) fn read_cloud_of<'a>(
         directed,
         ranges,
     })
-}
-
-/// How many points have a number of a return that is known of their ray, the rays of which it is another, and what explains all of these. `numbers` are those of the rays; 0: a
-/// ray of no return, or not known.
-fn wrong_numbers(
-    found: &Assigned,
-    numbers: &[u32],
-    (column, is_point): (&CloudColumn, &[bool]),
-) -> (usize, Vec<usize>, Option<String>) {
-    let told = numbers.iter().zip(&found.point_of).enumerate();
-    let pairs = told.filter_map(|(ray, (&number, point))| {
-        let point = point.filter(|&point| is_point[point] && number != 0)?;
-        Some((ray, column.values[point], f64::from(number)))
-    });
-    let pairs: Vec<(usize, f64, f64)> = pairs.collect();
-    let wrong: Vec<usize> =
-        pairs.iter().filter(|(_, stated, right)| stated != right).map(|(ray, ..)| *ray).collect();
-    let all = |is: &dyn Fn(f64, f64) -> bool| pairs.iter().all(|(_, stated, right)| is(*stated, *right));
-    let why = match pairs.first() {
-        None => None,
-        Some(_) if wrong.is_empty() => None,
-        Some(&(_, first, _)) if pairs.len() > 1 && all(&|stated, _| stated == first) => Some(format!(
-            "all points have the number of return {first}: it counts the returns of a footprint, the nearest is 1"
-        )),
-        Some(_) if all(&|stated, right| stated == right - 1.0) => {
-            Some("the numbers of returns count from 0: the nearest is 1".to_string())
-        }
-        Some(_) => None,
-    };
-    (pairs.len(), wrong, why)
 }
 
 /// What the fields of a cloud say of its points.
