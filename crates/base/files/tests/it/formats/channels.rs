@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use super::pictures::png;
 use raypencil_files::{
-    Channels, ExrMap, Limits, Raster, Storage, Values, add_ray_sets, read_channels, write_exr, write_npy,
+    Channels, ExrMap, Limits, Raster, Storage, Values, add_ray_sets, has_ray_sets, read_channels, write_exr, write_npy,
     write_npy_numbers, write_pfm,
 };
 use raypencil_scene::Image;
@@ -299,6 +299,15 @@ fn a_picture_beside_arrays_is_a_channel_only_by_the_name_of_a_map() {
     let keys: Vec<&String> = read.by_key.keys().collect();
     assert_eq!(keys, ["camera/P", "camera/depth.Z", "photos/preview"]);
     assert!(!read.files.iter().any(|file| file.ends_with("camera/preview.png")));
+}
+
+#[test]
+fn truth_values_alone_are_answers_to_a_set_of_rays() {
+    let folder = Folder::new();
+    write_npy_numbers(folder.path("rays/mast/side.npy"), &[2, 2], &[1.0, 0.0, 0.0, 1.0]).unwrap();
+    assert!(!has_ray_sets(folder.0.path()).unwrap());
+    write_npy_numbers(folder.path("rays/mast/hit.npy"), &[2, 2], &[1.0, 0.0, 0.0, 1.0]).unwrap();
+    assert!(has_ray_sets(folder.0.path()).unwrap());
 }
 
 #[test]
