@@ -11,7 +11,7 @@ use raypencil::io::{
 use raypencil::pack::{
     MIN_RAYS_PER_CLAUSE, Manifest, PackLabel, benched, blind_subject, input_faces, write_input,
 };
-use raypencil::report::counted;
+use raypencil::report::{count, counted};
 use raypencil::survey::warnings;
 use raypencil::{NamedRaySet, Progress as _, Sides};
 
@@ -188,11 +188,14 @@ fn counts_text(counts: &RayPackCounts) -> String {
     let untested = counts.untested();
     let nothing = if untested.is_empty() { "nothing".to_string() } else { untested.join(", ") };
     let RayPackCounts { rays, hits, misses, ties, too_near, .. } = counts;
-    let too_near = if *too_near == 0 { String::new() } else { format!(", {too_near} too near") };
+    let too_near = if *too_near == 0 { String::new() } else { format!(", {} too near", count(*too_near)) };
     format!(
-        "{}; {hits} hit, {ties} of them at a tie{too_near}, {misses} miss\n\
+        "{}; {} hit, {} of them at a tie{too_near}, {} miss\n\
          Not tested by any of its rays: {nothing}.\n",
-        counted(*rays, "ray", "rays")
+        counted(*rays, "ray", "rays"),
+        count(*hits),
+        count(*ties),
+        count(*misses)
     )
 }
 
@@ -220,4 +223,23 @@ fn tested(manifest: &Manifest) -> String {
     }
     let names: Vec<String> = untested.iter().map(|one| format!("{} ({})", one.clause, one.rays)).collect();
     format!("{said}; fewer: {}.", names.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_counts_of_a_pack_of_rays_are_written_alike() {
+        let counts = RayPackCounts {
+            rays: 28_928,
+            hits: 4_979,
+            misses: 22_849,
+            ties: 1_200,
+            too_near: 1_100,
+            ..RayPackCounts::default()
+        };
+        let expected = "28,928 rays; 4,979 hit, 1,200 of them at a tie, 1,100 too near, 22,849 miss\n";
+        assert!(counts_text(&counts).starts_with(expected), "{}", counts_text(&counts));
+    }
 }
