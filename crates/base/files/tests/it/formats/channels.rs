@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 
 use super::pictures::png;
 use raypencil_files::{
-    Channels, ExrMap, Limits, Raster, Storage, Values, add_ray_sets, has_ray_sets, read_channels, write_exr, write_npy,
-    write_npy_numbers, write_pfm,
+    Channels, ExrMap, Limits, Raster, Storage, Values, add_ray_sets, has_ray_sets, read_channels, write_exr,
+    write_npy, write_npy_numbers, write_pfm,
 };
 use raypencil_scene::Image;
 
