@@ -10,6 +10,7 @@ use raypencil_scene::pattern::{Cone, Keep, Mounting, PatternRays, Returns, Spinn
 use raypencil_scene::{CastRay, NamedRaySet, Precision, Sides, Silent, Triangles};
 
 use super::cloud_trial::{expect, head, of_frame, room};
+use super::kept_packs::put_pack;
 
 pub(super) const SENSOR: CloudFrame = CloudFrame::Sensor;
 
@@ -58,7 +59,10 @@ impl Trial {
     pub(super) fn new(mesh: Triangles, set: NamedRaySet) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let pack = folder.path().join("pack");
-        write_scan_pack(&pack, (&mesh, &set, Sides::Both), &CastSource::default(), &Silent).expect("a pack");
+        put_pack(&pack, &(&mesh, &set), |pack| {
+            write_scan_pack(pack, (&mesh, &set, Sides::Both), &CastSource::default(), &Silent)
+                .expect("a pack");
+        });
         let answers = cast(&mesh, set.set.rays(), Sides::Both, Questions::default(), &Silent);
         let returns = BeamReturns::of(&answers, &set).expect("returns");
         Self { folder, set, returns, mesh }

@@ -10,6 +10,8 @@ use raypencil_cast::{
 use raypencil_scene::pattern::{Mounting, Spinning, TimedPose, TimedPoses};
 use raypencil_scene::{NamedRaySet, Pose, Precision, Sides, Silent, Triangles};
 
+use super::kept_packs::put_pack;
+
 /// A room without any symmetry, with a ridge in it and a gap in a wall: rays through the gap miss.
 pub(super) fn room() -> Triangles {
     let (mut vertices, mut faces) = (Vec::new(), Vec::new());
@@ -125,7 +127,9 @@ impl Trial {
         let set = set_of(head, mounting);
         let source = CastSource { mesh: "room".into(), rays: "head".into(), ..CastSource::default() };
         let pack = folder.path().join("pack");
-        write_scan_pack(&pack, (&room(), &set, Sides::Both), &source, &Silent).expect("a pack");
+        put_pack(&pack, &(&source, &set), |pack| {
+            write_scan_pack(pack, (&room(), &set, Sides::Both), &source, &Silent).expect("a pack");
+        });
         Self { folder, set }
     }
 

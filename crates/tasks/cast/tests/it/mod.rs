@@ -12,6 +12,7 @@ mod clouds_of_return_numbers;
 mod clouds_of_returns;
 mod clouds_of_sensors;
 mod columns;
+mod kept_packs;
 mod lidar;
 mod pack_trial;
 mod packs_refused;

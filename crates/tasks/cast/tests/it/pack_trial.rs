@@ -7,6 +7,8 @@ use raypencil_cast::{
 use raypencil_files::{read_npy_numbers, write_npy_numbers};
 use raypencil_scene::{CastRay, Precision, Sides, Silent, Triangles};
 
+use super::kept_packs::put_pack;
+
 /// The cube from -1 to 1, its fronts outside.
 pub(super) fn cube() -> Triangles {
     let corner = |k: u32| [0, 1, 2].map(|axis| if k >> axis & 1 == 1 { 1.0 } else { -1.0 });
@@ -59,8 +61,10 @@ impl Folders {
     pub(super) fn new(sides: Sides, answered: Sides, change: impl Fn(&mut CastRay)) -> Self {
         let folders = Self { pack: tempfile::tempdir().unwrap(), candidate: tempfile::tempdir().unwrap() };
         let (mesh, rays) = (cube(), rays());
-        let counts = write_ray_pack(folders.pack.path(), (&mesh, &rays, sides), &source(), &Silent).unwrap();
-        assert_eq!(counts.untested(), [""; 0], "{counts:?}");
+        put_pack(folders.pack.path(), &(&mesh, &rays, sides), |pack| {
+            let counts = write_ray_pack(pack, (&mesh, &rays, sides), &source(), &Silent).unwrap();
+            assert_eq!(counts.untested(), [""; 0], "{counts:?}");
+        });
         let mut changed = rays.clone();
         changed.rays.iter_mut().for_each(change);
         let answers = cast(&mesh, &changed.rays, answered, Questions::default(), &Silent);

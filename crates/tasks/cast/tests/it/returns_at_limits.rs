@@ -10,6 +10,7 @@ use raypencil_scene::pattern::{EchoLight, Keep, Mounting, PatternRays, Returns};
 use raypencil_scene::{CastRay, FaceId, NamedRaySet, Precision, Sides, Silent, Triangles};
 
 use super::cloud_trial::{expect, of_frame};
+use super::kept_packs::put_pack;
 
 const U: f64 = Precision::F32.unit_roundoff;
 
@@ -123,8 +124,11 @@ impl Bundle {
     ) -> RayPackChecked {
         let folder = tempfile::tempdir().expect("a folder");
         let pack = folder.path().join("pack");
-        write_scan_pack(&pack, (&self.mesh(), &self.set(), Sides::Both), &CastSource::default(), &Silent)
-            .expect("a pack");
+        let (mesh, set) = (self.mesh(), self.set());
+        put_pack(&pack, &(&mesh, &set), |pack| {
+            write_scan_pack(pack, (&mesh, &set, Sides::Both), &CastSource::default(), &Silent)
+                .expect("a pack");
+        });
         let file = self.write(folder.path().join("theirs.pcd"), told, numbers);
         check_ray_pack(&pack, &file, precision, of_frame(CloudFrame::Mesh), &Silent).expect("a check")
     }
