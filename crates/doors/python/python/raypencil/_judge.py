@@ -166,7 +166,7 @@ def _stated(answers: Mapping[str, Any], shape: _arrays.Shape, miss: float | None
         stated["hit"] = _hits_of("answers: hit", shaped("hit", ()).reshape(count))
     # Which rays hit by anything but a face: by their truth value, a distance, or without distances a point.
     hits = np.zeros(count, dtype=bool)
-    distances = [name for name in ("t", "range") if name in stated]
+    distances: list[str] = [name for name in ("t", "range") if name in stated]
     for name in distances or ["point"] * ("point" in stated):
         hits |= np.isfinite(stated[name].reshape(count, -1)).all(axis=1) & ~means_miss[name]
     if "hit" in stated:
