@@ -78,7 +78,7 @@ def cast(
             for all hits in exact order; a tuple asks for both.
         values: which values of first hits are formed: names of ``face``, ``side``, ``ties``, ``t``, ``range``, ``cos_incidence``,
             ``point``, ``normal``, ``barycentric``. ``face`` always comes along. ``None``: all, or those of ``out``; ``()``: none.
-        with_: ``"referee"`` is exact. ``"tracer"`` is 1.1 to 2.3 times as fast (docs/evidence/speed.md), rounds, and knows no ties, no
+        with_: ``"referee"`` is exact. ``"tracer"`` is 1.2 to 3.2 times as fast (docs/evidence/speed.md), rounds, and knows no ties, no
             margins and no crossings.
         fronts_only: rays pass through the backs of faces.
         margins: how far each ray may be moved sideways before its answer changes.
