@@ -25,6 +25,7 @@
 //! values      the values of a hit, correctly rounded
 //! margin      how far the ray may be moved sideways before its answer changes
 //! ruling      whether the rounding of another program excuses its answer
+//! square      what holds wherever the ray is moved within a square
 //! ```
 //!
 //! The kernels of the sensors' rays (`face`, `intersection`) are apart from these: there a vertex is an `f32` number and
@@ -35,6 +36,7 @@ mod first;
 mod margin;
 mod query_ray;
 mod ruling;
+mod square;
 mod triangle;
 mod values;
 mod wide_tree;

@@ -25,9 +25,8 @@ impl<T: Number> RayNumbers<T> {
     }
 
     /// The ray moved sideways by `by`, along the two vectors of [`CastRay::across`].
-    fn moved(ray: &CastRay, by: [f64; 2]) -> Self {
+    pub(super) fn moved(ray: &CastRay, by: [T; 2]) -> Self {
         let [u, v] = ray.across().map(Vector::of);
-        let by = by.map(T::of);
         let origin = Vector::of(ray.origin).add(&u.scaled(&by[0])).add(&v.scaled(&by[1]));
         Self { origin, direction: Vector::of(ray.direction) }
     }
@@ -67,7 +66,7 @@ impl<'r> QueryRay<'r> {
 
     /// The ray moved sideways by `by`, along the two vectors of [`CastRay::across`].
     pub(super) fn moved(ray: &'r CastRay, by: [f64; 2]) -> Self {
-        let fast = RayNumbers::<Interval>::moved(ray, by);
+        let fast = RayNumbers::moved(ray, by.map(Interval::of));
         let RayNumbers { origin, direction } = fast.clone();
         let one = Interval::of(1.0);
         let filter =
@@ -105,7 +104,7 @@ impl<'r> QueryRay<'r> {
     pub(super) fn exact(&self) -> &RayNumbers<Dyadic> {
         self.exact.get_or_init(|| {
             Box::new(match self.moved {
-                Some(by) => RayNumbers::moved(self.ray, by),
+                Some(by) => RayNumbers::moved(self.ray, by.map(Dyadic::of)),
                 None => RayNumbers::of(self.ray),
             })
         })

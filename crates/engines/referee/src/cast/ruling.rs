@@ -28,21 +28,21 @@
 //!
 //! # The search
 //!
-//! Displacements are tried, exactly: none; onto the stated face, into the middle of what is near; off the faces that are in the way,
-//! over their nearest edge; and around, in 16 directions and three sizes. Only what is found is excused: a missed witness
-//! makes the ruling stricter, never milder.
+//! What is clearly [out of reach](super::square) is wrong at once. For the rest, displacements are tried, exactly: none; onto the
+//! stated face, into the middle of what is near; off the faces that are in the way, over their nearest edge; and around, in 16
+//! directions and three sizes. Only what is found is excused: a missed witness makes the ruling stricter, never milder.
 
 use glam::DVec2;
 use raypencil_scene::{CastRay, FaceId, Precision, Reading, Sides};
 
 use super::margin::{Frame, onto_face};
 use super::query_ray::QueryRay;
+use super::square::around;
 use super::triangle::Triangle;
 use super::{ExactCast, moved_bundle};
 use crate::hits::rounded_face::least_cosine;
 use crate::hits::ruling::Ruling;
 use crate::numbers::number::Interval;
-use crate::trees::bvh::RayBundle;
 use crate::{RANGE_ROUNDINGS, aspect};
 
 /// How often the errors of the rule are charged, sideways: 8 u S twice.
@@ -93,7 +93,11 @@ impl ExactCast<'_> {
             Reading::Miss => Reading::Miss,
         };
         let trial = Trial { cast: self, ray, sides, precision, frame: Frame::new(ray), stated };
-        let witness = trial.displacements(&first).into_iter().find(|&by| trial.excuses(by));
+        let most = self.lateral_error(ray, precision);
+        if trial.is_out_of_reach(&first, most) {
+            return Ruling::Wrong;
+        }
+        let witness = trial.displacements(&first, most).into_iter().find(|&by| trial.excuses(by));
         witness.map_or(Ruling::Wrong, |moved| Ruling::Rounding(moved.into()))
     }
 
@@ -131,19 +135,18 @@ impl ExactCast<'_> {
 }
 
 /// One stated answer.
-struct Trial<'a> {
-    cast: &'a ExactCast<'a>,
-    ray: &'a CastRay,
-    sides: Sides,
-    precision: Precision,
-    frame: Frame<'a>,
-    stated: Reading<Triangle>,
+pub(super) struct Trial<'a> {
+    pub(super) cast: &'a ExactCast<'a>,
+    pub(super) ray: &'a CastRay,
+    pub(super) sides: Sides,
+    pub(super) precision: Precision,
+    pub(super) frame: Frame<'a>,
+    pub(super) stated: Reading<Triangle>,
 }
 
 impl Trial<'_> {
-    /// Displacements that may excuse the answer, none larger than is charged.
-    fn displacements(&self, first: &[Triangle]) -> Vec<[f64; 2]> {
-        let most = self.cast.lateral_error(self.ray, self.precision);
+    /// Displacements that may excuse the answer, none larger than `most`.
+    pub(super) fn displacements(&self, first: &[Triangle], most: f64) -> Vec<[f64; 2]> {
         let mut tried = vec![DVec2::ZERO];
         let query = QueryRay::new(self.ray);
         for face in self.sought(most) {
@@ -177,9 +180,7 @@ impl Trial<'_> {
             Reading::Hit(face) => vec![face],
             Reading::Miss => Vec::new(),
             Reading::TooNear => {
-                let bundle = moved_bundle(self.ray, [0.0; 2]);
-                // The charge is for each of two directions at right angles.
-                let around = RayBundle { start_radius: bundle.start_radius + 2.0 * most, ..bundle };
+                let around = around(self.ray, most);
                 let query = QueryRay::new(self.ray);
                 let mut beside = Vec::new();
                 self.cast.bvh().visit(&around, |face| {
@@ -201,16 +202,12 @@ impl Trial<'_> {
 
     /// The t of a face, rounded, and the error that its range is charged with, as a part of t.
     fn t_and_error(&self, face: &Triangle, query: &QueryRay<'_>) -> (f64, f64) {
-        let length = QueryRay::length(self.ray);
-        let t: [f64; 2] = {
-            let t = face.height::<Interval>(query.fast()).over(face.approach(query.fast()));
-            [t.low, t.high]
-        };
-        (0.5 * t[0] + 0.5 * t[1], self.cast.range_error(self.ray, face.id, self.precision) / length)
+        let t = face.height::<Interval>(query.fast()).over(face.approach(query.fast()));
+        (t.middle(), self.range_error_in_t(face))
     }
 
     /// Whether the answer is right for the ray moved by this.
-    fn excuses(&self, by: [f64; 2]) -> bool {
+    pub(super) fn excuses(&self, by: [f64; 2]) -> bool {
         // No face is farther behind the origin than this; faces a little before t_min are asked too.
         let behind = -4.0 * self.cast.size(self.ray) / QueryRay::length(self.ray);
         let without_ends = CastRay { t_min: behind, t_max: f64::INFINITY, ..*self.ray };

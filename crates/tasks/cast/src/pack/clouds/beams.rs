@@ -305,12 +305,16 @@ impl Beams {
             let asked = &self.rays[ray];
             let endless = CastRay { t_max: f64::INFINITY, t_blind: 0.0, ..*asked };
             let nearest = exact.first(&endless, sides).first().copied();
-            let is_at_an_end = nearest.and_then(|face| exact.values(&endless, face)).is_some_and(|hit| {
-                let error = exact.range_error(asked, hit.face, precision);
-                let is_at = |t: f64| (hit.range.double - t * asked.direction.length()).abs() <= error;
+            let is_at_an_end = nearest.and_then(|face| exact.meeting(&endless, face)).is_some_and(|hit| {
+                let (range, error) = (hit.range().double, exact.range_error(asked, hit.face(), precision));
+                let is_at = |t: f64| (range - t * asked.direction.length()).abs() <= error;
                 is_at(asked.t_max) || is_at(asked.t_blind)
             });
-            is_at_an_end || exact.margins(asked, sides).surface.lo <= exact.lateral_error(asked, precision)
+            let most = exact.lateral_error(asked, precision);
+            // Margins are asked for the few rays of which the quick answer says nothing.
+            let may_hit_another =
+                || !exact.is_steady(asked, sides, most) && exact.margins(asked, sides).surface.lo <= most;
+            is_at_an_end || may_hit_another()
         };
         hits.windows(2).any(may_split)
             || self.rays_at(beam).any(may_change)

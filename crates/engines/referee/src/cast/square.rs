@@ -1,0 +1,154 @@
+//! What holds for a ray with every displacement of a square, told without trying any of them.
+//!
+//! Such a ray is a ray in intervals: what an interval says with certainty holds for each displacement of the square. Interval
+//! arithmetic is monotone, so it also holds for the rounded t of each moved ray, which lies in the interval of the square.
+//!
+//! Two questions are answered so, and nothing is known where the answer is no:
+//!
+//! * Is a stated answer out of the reach of all displacements? It is, where the rays of the square pass a stated face certainly on
+//!   opposite sides of two of its edges, so that none meets it; and where all of them meet another face that is clearly in the way of
+//!   the stated face, or of a miss. Most wrong answers are of these kinds.
+//! * Is the answer the same for all displacements? It is, where all rays of the square meet one face, clearly before all others.
+
+use std::cmp::Ordering;
+
+use raypencil_scene::{CastRay, Reading, Side, Sides};
+
+use super::query_ray::{QueryRay, RayNumbers};
+use super::ruling::Trial;
+use super::triangle::Triangle;
+use super::{ExactCast, moved_bundle};
+use crate::numbers::number::{Interval, Number};
+use crate::trees::bvh::RayBundle;
+
+/// A ray with all displacements of a square.
+struct Square(RayNumbers<Interval>);
+
+impl Square {
+    /// All displacements whose parts are at most `most`.
+    fn new(ray: &CastRay, most: f64) -> Self {
+        Self(RayNumbers::moved(ray, [Interval::between(-most, most); 2]))
+    }
+
+    /// On which side of each edge all rays pass; `None` where that is not certain.
+    fn sides(&self, face: &Triangle) -> [Option<Ordering>; 3] {
+        [0, 1, 2].map(|k| face.edge::<Interval>(k, &self.0).sign())
+    }
+
+    /// Whether all rays pass certainly outside of the face.
+    fn is_outside(&self, face: &Triangle) -> bool {
+        let sides = self.sides(face);
+        sides.contains(&Some(Ordering::Less)) && sides.contains(&Some(Ordering::Greater))
+    }
+
+    /// Whether all rays pass certainly inside the three edges.
+    fn is_inside(&self, face: &Triangle) -> bool {
+        let sides = self.sides(face);
+        [Ordering::Less, Ordering::Greater].iter().any(|&side| sides == [Some(side); 3])
+    }
+
+    /// Whether all rays see a side of the face that does not count.
+    fn is_unseen(&self, face: &Triangle, sides: Sides) -> bool {
+        let side = match face.approach(&self.0).sign() {
+            Some(Ordering::Less) => Side::Front,
+            Some(Ordering::Greater) => Side::Back,
+            _ => return false,
+        };
+        !sides.include(side)
+    }
+
+    /// What contains the t of a face's plane for every ray.
+    fn t(&self, face: &Triangle) -> Interval {
+        face.height(&self.0).over(face.approach(&self.0))
+    }
+}
+
+impl ExactCast<'_> {
+    /// Whether the ray certainly meets the same face, clearly before all others, wherever it is moved by at most `most` along both
+    /// vectors of [`CastRay::across`]; or misses everywhere. A sensor's ray must also be clearly not, or clearly, too near.
+    ///
+    /// This is far quicker than [`margins`](Self::margins), and says less: `false` is no statement.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use raypencil_referee::ExactCast;
+    /// use raypencil_scene::{CastRay, Sides, Triangles};
+    ///
+    /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let triangle = Triangles::new(corners, vec![[0, 1, 2]])?;
+    /// let ray = CastRay::new(DVec3::new(0.25, 0.25, 1.0), DVec3::NEG_Z);
+    /// let is_steady = |most: f64| ExactCast::new(&triangle).is_steady(&ray, Sides::Both, most);
+    /// // The nearest edges are 0.25 away.
+    /// assert!(is_steady(0.2));
+    /// assert!(!is_steady(0.3));
+    /// # Ok::<(), raypencil_scene::SceneError>(())
+    /// ```
+    pub fn is_steady(&self, ray: &CastRay, sides: Sides, most: f64) -> bool {
+        let square = Square::new(ray, most);
+        let first = self.nearest(ray, sides);
+        let nearest = match first.as_slice() {
+            [] => None,
+            [face] => Some((face.id, square.t(face))),
+            // Copies of a face, or a seam.
+            _ => return false,
+        };
+        if let Some((_, t)) = nearest {
+            let is_within = t.low >= ray.t_min && t.high <= ray.t_max;
+            let is_clearly_near_or_far = t.low > ray.t_blind || t.high < ray.t_blind;
+            if !is_within || !is_clearly_near_or_far || !square.is_inside(&first[0]) {
+                return false;
+            }
+        }
+        let up_to = nearest.map_or(ray.t_max, |(_, t)| t.high);
+        let around = around(&CastRay { t_max: up_to, ..*ray }, most);
+        let mut is_alone = true;
+        self.bvh().visit(&around, |face| {
+            let is_nearest = nearest.is_some_and(|(id, _)| id == face.id);
+            if is_alone && !is_nearest && !square.is_outside(face) && !square.is_unseen(face, sides) {
+                let t = square.t(face);
+                is_alone = t.high < ray.t_min || t.low > up_to;
+            }
+            if is_alone { around.max_range } else { -1.0 }
+        });
+        is_alone
+    }
+}
+
+/// The ray with all displacements of at most `most`, for the hierarchy.
+pub(super) fn around(ray: &CastRay, most: f64) -> RayBundle {
+    let bundle = moved_bundle(ray, [0.0; 2]);
+    // The displacement has two parts at right angles. Moved rays are parallel, so faces at the ray's end are as far beside it.
+    RayBundle {
+        start_radius: bundle.start_radius + 2.0 * most,
+        max_range: bundle.max_range + 2.0 * most,
+        ..bundle
+    }
+}
+
+impl Trial<'_> {
+    /// Whether none of the displacements up to `most` excuses the answer. `first` is what the ray meets where it is.
+    pub(super) fn is_out_of_reach(&self, first: &[Triangle], most: f64) -> bool {
+        let square = Square::new(self.ray, most);
+        let CastRay { t_min, t_max, .. } = *self.ray;
+        let (stated, error_of_stated) = match &self.stated {
+            Reading::Hit(stated) if square.is_outside(stated) => return true,
+            Reading::Hit(stated) => (square.t(stated).low, self.range_error_in_t(stated)),
+            Reading::Miss => (f64::INFINITY, 0.0),
+            Reading::TooNear => return false,
+        };
+        first.iter().any(|face| {
+            let (t, error) = (square.t(face), self.range_error_in_t(face));
+            let is_within_ends = t.low - error >= t_min && t.high + error <= t_max;
+            is_within_ends && t.high + error + error_of_stated < stated && square.is_inside(face)
+        })
+    }
+
+    /// The error that the range of a face is charged with, as a part of t.
+    pub(super) fn range_error_in_t(&self, face: &Triangle) -> f64 {
+        self.cast.range_error(self.ray, face.id, self.precision) / QueryRay::length(self.ray)
+    }
+}
+
+#[cfg(test)]
+#[path = "../../tests/unit/square.rs"]
+mod tests;
