@@ -1,14 +1,18 @@
 //! The fast ways to a margin against the slow ones: the same bits on meshes that are hard for them, and counts that prove that the
 //! fast ways are taken.
 
+use std::rc::Rc;
+
 use glam::DVec3;
 use raypencil_scene::{FaceId, Side, Triangles};
 
 use super::super::query_ray::QueryRay;
 use super::super::triangle::Triangle;
-use super::flat::{Linear, corner_of};
+use super::flat::{FlatFace, Linear, corner_of};
+use super::hidden::{Hidden, WalkedFace};
 use super::looks::LOOKS;
 use super::region::{LazyLinear, least_size};
+use super::segment::{Border, Piece, Segment};
 use super::*;
 use crate::numbers::number::{Dyadic, Interval, Number};
 use crate::splitmix::SplitMix64;
@@ -289,6 +293,45 @@ fn faces_in_one_place_are_not_looked_at_for_each_of_them() {
         let [(few, _), (many, margins)] = [128, 1024].map(|n| looks(&(0..n).map(|k| stack(k, n)).collect()));
         assert!(many <= few.max(for_each_face * 1024), "{name}: {few} for 128 faces, {many} for 1024");
         assert!(margins.surface.lo > 0.0, "{name}: {margins:?}");
+    }
+}
+
+/// A face hides a piece of an edge wholly if its picture contains the far end, and it is met before that and after the start of the ray.
+#[test]
+fn a_piece_is_hidden_wholly_by_a_face_that_ends_behind_it() {
+    let edge_of = right_triangle(DVec3::new(3.0, 3.0, 0.0), 1.0);
+    let roof = |size: f64, z: f64| right_triangle(DVec3::new(2.5, 2.5, z), size);
+    let down = CastRay::new(DVec3::new(0.5, 0.5, 4.0), DVec3::NEG_Z);
+    let cut = CastRay { t_min: 3.5, ..down };
+    let cases = [
+        ("wide", roof(4.0, 1.0), down, true),
+        ("narrow", roof(1.2, 1.0), down, false),
+        ("behind", roof(4.0, -1.0), down, false),
+        ("before the start", roof(4.0, 1.0), cut, false),
+    ];
+    for (name, roof, ray, expected) in cases {
+        let frame = Frame::new(&ray);
+        let segment_in = |k: usize| Segment::of_edge(&edge_of, Side::Front, k, frame.exact());
+        // The edge from (3, 3) to (4, 3), which is nearest to the ray at its first end.
+        let k = (0..3)
+            .find(|&k| corner_of(Side::Front, k) + corner_of(Side::Front, k + 1) == 1)
+            .expect("an edge");
+        let segment = Rc::new(segment_in(k));
+        let fast = Segment::of_edge(&edge_of, Side::Front, k, &frame.fast);
+        let pieces =
+            segment.pieces(frame.exact()).expect("an edge after the start").map(|[near, far]| Piece {
+                face: FaceId(1),
+                side: Side::Front,
+                border: Border::Edge(k),
+                segment: Rc::clone(&segment),
+                near,
+                far,
+            });
+        let piece = pieces.into_iter().find(|piece| !piece.is_empty()).expect("a piece");
+        let flat = FlatFace::new(&frame.fast, &roof, Side::Front);
+        let first = WalkedFace { face: FaceId(0), flat };
+        let hidden = piece.hidden_by_surface(first, &fast, &frame.fast, |_, _| None);
+        assert_eq!(matches!(hidden, Hidden::Wholly), expected, "{name}");
     }
 }
 

@@ -140,6 +140,25 @@ fn every_face_that_is_met_is_shown_and_few_others() {
     }
 }
 
+/// A ray that passes a face is shown it, unless it passes by more than the bound of the page.
+#[test]
+fn a_face_is_left_out_only_beyond_the_bound() {
+    // In the frame half as large: E = 3/2. A ray straight down, beside the edge from c to a.
+    let corners = vec![[-1.5, -1.5, 0.0], [1.5, -1.5, 0.0], [-1.5, 1.5, 0.0]];
+    let tree = WideTree::of(&Triangles::new(corners, vec![[0, 1, 2]]).expect("a mesh"));
+    let beside = |steps: f64| {
+        let x = -0.75 - steps * f64::from(U);
+        let ray = CastRay::new(2.0 * DVec3::new(x, 0.0, 0.25), DVec3::NEG_Z);
+        tree.leaves[0].may_meet(&tree.ray(&ray).expect("a ray that is near"))
+    };
+    // d x a' is (-3/4, -x', 0) for the way x' beside the edge, so C = 3/4 and F = E x'. A is 7/4, and a little more for all roundings.
+    let (u, a, c, e) = (f64::from(U), 1.75, 0.75, 1.5);
+    let bound = (c + 2.0 * e + 32.0 * u * a) * (8.0 * u + 16.0 * u * e) + 48.0 * u * a * e;
+    let steps = bound / e / u;
+    assert_eq!([0.0, 0.5 * steps, steps - 1.0].map(|steps| beside(steps.floor())), [1; 3]);
+    assert_eq!([1.01 * steps + 1.0, 2.0 * steps].map(|steps| beside(steps.ceil())), [0; 2]);
+}
+
 #[test]
 fn every_face_is_in_a_leaf_whatever_their_number() {
     let mut random = SplitMix64(5);

@@ -258,3 +258,7 @@ impl ExactCast<'_> {
         }
     }
 }
+
+#[cfg(test)]
+#[path = "../../../tests/unit/screen.rs"]
+mod tests;

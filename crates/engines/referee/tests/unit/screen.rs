@@ -1,0 +1,26 @@
+//! What the screen calls "before" is so by more than the bound of its page.
+
+use raypencil_scene::CastRay;
+
+use super::*;
+
+#[test]
+fn a_face_is_before_a_place_if_it_is_so_by_more_than_the_bound() {
+    // In the frame r = 1 + a + b, so at (1/4, 1/4) the face is met at 3/2, without rounding.
+    let corners = [DVec3::new(0.0, 0.0, 1.0), DVec3::new(1.0, 0.0, 2.0), DVec3::new(0.0, 1.0, 2.0)];
+    let face = ShownFace { id: FaceId(0), corners, turn: 1.0 };
+    let ray = CastRay::new(DVec3::ZERO, DVec3::Z);
+    let frame = Frame::new(&ray);
+    let screen = Screen::new(&frame, 2.0).expect("a frame of this size");
+    let e = screen.slack;
+    // The weights are 1/2, 1/4 and 1/4 of W = 1, each off by 3 E (s + 3 E), where s is the sum of the parts of both differences.
+    let off = 3.0 * e * ((1.0 + 0.5) + (2.0 + 1.0) + (1.0 + 1.0));
+    let bound = 2.0 * off + ROUNDINGS + 4.0 * e;
+    let is_before = |r: f64| screen.is_before(&face, DVec3::new(0.25, 0.25, r));
+    for not_so in [1.4, 1.5 - bound, 1.5, 1.5 + 0.5 * bound, 1.5 + 0.99 * bound] {
+        assert!(!is_before(not_so), "{not_so}");
+    }
+    for so in [1.5 + 1.01 * bound, 1.6, 2.5] {
+        assert!(is_before(so), "{so}");
+    }
+}
