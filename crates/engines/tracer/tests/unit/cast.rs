@@ -7,6 +7,8 @@ use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use raypencil_scene::{FaceId, Side};
 
+use super::super::frame::Frame;
+use super::super::in_box::{doubtful_below, moved_into_box};
 use super::*;
 
 /// All crossings of a ray by asking every face.
@@ -390,5 +392,140 @@ fn the_shortest_and_the_longest_direction_meet_the_largest_and_a_small_mesh() {
             let Some((FaceId(0), t)) = hit else { panic!("{size:e} {length:e}: {hit:?}") };
             assert!((t / (size / length) - 1.0).abs() < 1e-12, "{size:e} {length:e}: {t:e}");
         }
+    }
+}
+
+/// A mesh of these faces, each with corners of its own.
+fn mesh_of(corners: &[[[f64; 3]; 3]]) -> Triangles {
+    let faces = (0..corners.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    Triangles::new(corners.concat(), faces).unwrap()
+}
+
+#[test]
+fn the_ends_of_a_ray_belong_to_it() {
+    let cast = TracerCast::new(&mesh_of(&[[[-4.0, -4.0, 0.0], [4.0, -4.0, 0.0], [0.0, 4.0, 0.0]]]));
+    let ray = CastRay::new(DVec3::new(0.0, 0.0, 4.0), DVec3::NEG_Z);
+    let is_met = |t_min: f64, t_max: f64| cast.traverser().any(&CastRay { t_min, t_max, ..ray }, Sides::Both);
+    assert!(is_met(4.0, f64::INFINITY) && is_met(0.0, 4.0) && is_met(4.0, 4.0));
+    assert!(!is_met(4.0_f64.next_up(), f64::INFINITY) && !is_met(0.0, 4.0_f64.next_down()));
+}
+
+#[test]
+fn a_face_has_the_same_hit_wherever_its_cycle_begins() {
+    let corners = [[0.1, 0.7, 0.3], [-0.9, -0.2, 0.15], [0.8, -0.6, -0.45]];
+    let begun_at = |k: usize| [0, 1, 2].map(|corner| corners[(corner + k) % 3]);
+    let casts = [0, 1, 2].map(|k| TracerCast::new(&mesh_of(&[begun_at(k)])));
+    let mut hits = 0;
+    for k in 0..200 {
+        let aim = DVec3::new(0.31 - 0.003 * f64::from(k), 0.2 - 0.0017 * f64::from(k), 0.1);
+        let origin = DVec3::new(0.17, -0.23, 1.9);
+        let ray = CastRay::new(origin, aim - origin);
+        let of = casts.each_ref().map(|cast| cast.traverser().first(&ray, Sides::Both));
+        let bits =
+            of.map(|hit| hit.map(|hit| [hit.t, hit.normal.x, hit.normal.y, hit.normal.z].map(f64::to_bits)));
+        assert!(bits[0] == bits[1] && bits[0] == bits[2], "{of:?}");
+        let Some(weights) = of[0].map(|hit| hit.barycentric) else { continue };
+        for k in 1..3 {
+            let turned = of[k].unwrap().barycentric;
+            assert_eq!(
+                [0, 1, 2].map(|corner| turned[corner].to_bits()),
+                [0, 1, 2].map(|corner| weights[(corner + k) % 3].to_bits())
+            );
+        }
+        hits += 1;
+    }
+    assert!(hits > 50, "{hits}");
+}
+
+#[test]
+fn faces_that_look_alike_in_sums_and_quotients_have_an_area() {
+    // Corners that add up to 0, and edges along the quotient of two corners.
+    let opposite = [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let alike = [[1.0, 1.0, 1.0], [3.0, 1.0, 1.0], [2.0, 0.0, 0.0]];
+    for corners in [opposite, alike] {
+        let [a, b, c] = corners.map(DVec3::from_array);
+        let middle = (a + b + c) / 3.0;
+        let cast = TracerCast::new(&mesh_of(&[corners]));
+        let normal = (b - a).cross(c - a);
+        assert!(cast.traverser().any(&CastRay::new(middle + normal, -normal), Sides::Fronts), "{corners:?}");
+    }
+}
+
+#[test]
+fn a_weight_of_nothing_is_written_as_plain_zero() {
+    let cast = TracerCast::new(&mesh_of(&[[[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]]]));
+    for at in [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0], [1.0, 0.0], [0.0, 1.0], [3.0, 1.0]] {
+        for z in [1.0, -1.0] {
+            let ray = CastRay::new(DVec3::new(at[0], at[1], 4.0 * z), DVec3::new(0.0, 0.0, -z));
+            let hit = cast.traverser().first(&ray, Sides::Both).unwrap();
+            let expected = [4.0 - at[0] - at[1], at[0], at[1]].map(|weight| weight / 4.0);
+            assert_eq!(hit.barycentric.map(f64::to_bits), expected.map(f64::to_bits), "{at:?} from {z}");
+        }
+    }
+}
+
+#[test]
+fn the_first_hits_of_a_set_are_those_of_its_rays() {
+    let place = DVec3::new(1.0, 2.0, 3.0);
+    let mesh = sheet(1.0, place, 6);
+    let row = [DVec3::new(-1.3, -0.9, 0.0), DVec3::new(1.1, 0.8, 0.0)];
+    let rays = fan(1.0, place, DVec3::new(0.1, 0.2, 2.0), row, 5000, 1.0);
+    let cast = TracerCast::new(&mesh);
+    for sides in [Sides::Both, Sides::Fronts] {
+        let mut traverser = cast.traverser();
+        let expected: Vec<_> = rays.iter().map(|ray| traverser.first(ray, sides)).collect();
+        let set = RaySet::new(rays.clone(), sides).unwrap();
+        assert_eq!(cast.first_of(&set), expected);
+        assert!(expected.iter().filter(|hit| hit.is_some()).count() > 3000);
+    }
+}
+
+/// The way from where a ray is traced: what is longer costs time, and what is shorter loses hits.
+#[test]
+fn the_way_to_a_hit_is_longer_than_it_by_little() {
+    for (range, entry) in [(5.0, 3.0), (1.5, 0.0), (1e6, 1e6 - 2.5), (3.0, -1.0)] {
+        let way = f64::from(way_to(range, entry));
+        assert!(way >= range - entry && way < range - entry + 1e-5, "{way} from {entry} to {range}");
+    }
+    assert!(way_to(1e9, 0.0) < 6.001);
+}
+
+#[test]
+fn a_ray_far_from_the_origin_of_coordinates_goes_through_the_tree_as_any_other() {
+    let square = |at: f64| [[at - 1.0, at - 1.0, 0.0], [at + 1.0, at - 1.0, 0.0], [at, at + 1.0, 0.0]];
+    for (at, from, expected) in [(0.0, 1e6, true), (1e5, -1e5, true), (1e6, 1e6, true), (0.0, 1e9, false)] {
+        let frame = Frame::of(&mesh_of(&[square(at)]));
+        let origin = DVec3::new(from, at, 1.0);
+        let ray = CastRay::new(origin, DVec3::new(at, at, 0.0) - origin);
+        let walk = frame.walk(&ray, &frame.ray(&ray));
+        assert_eq!(matches!(walk, Walk::Tree { .. }), expected, "{walk:?} at {at} from {from}");
+    }
+    // Beside the box, and along an axis that keeps it there.
+    let frame = Frame::of(&mesh_of(&[square(0.0)]));
+    for along in [DVec3::X, DVec3::Y, DVec3::new(1.0, 1e-40, 0.0)] {
+        let beside = CastRay::new(DVec3::new(0.0, 0.0, 3.0) - 4.0 * along, along);
+        assert!(matches!(frame.walk(&beside, &frame.ray(&beside)), Walk::Nothing), "{along}");
+    }
+}
+
+/// Where a face's t may be off, by the formula of its page; and a ray along a side of a face's box is not beside it.
+#[test]
+fn a_grazing_ray_is_judged_by_the_bound_and_by_the_box() {
+    let corners = [[0.0, 0.0, 0.0], [2.0, 0.5, 0.0], [1.0, -4.0, 0.25]].map(DVec3::from_array);
+    let [e, f, w] = [2.0, 4.0, 8.0];
+    let bound = doubtful_below(corners, DVec3::new(-8.0, 1.0, 3.0));
+    let expected = e * f * (w + e + f) / f64::from(1_u32 << 22);
+    assert!((bound / expected - 1.0).abs() < 1e-12, "{bound:e}, {expected:e}");
+
+    let (low, high) = (DVec3::new(0.0, -4.0, 0.0), DVec3::new(2.0, 0.5, 0.25));
+    for (y, z) in [(low.y, low.z), (high.y, low.z), (low.y, high.z), (high.y, high.z)] {
+        let origin = DVec3::new(-8.0, y, z);
+        let along = |t: f64| moved_into_box(t, corners, origin, DVec3::X);
+        let (before, within, behind) = (along(-3.0), along(9.0), along(99.0));
+        assert!((before - 8.0).abs() < 1e-12 && within == 9.0 && (behind - 10.0).abs() < 1e-12, "{y}, {z}");
+        assert!(
+            moved_into_box(9.0, corners, origin + 1e-9 * DVec3::NEG_Y, DVec3::X).is_nan() == (y == low.y)
+        );
+        assert!(moved_into_box(9.0, corners, origin + 1e-9 * DVec3::Y, DVec3::X).is_nan() == (y == high.y));
     }
 }

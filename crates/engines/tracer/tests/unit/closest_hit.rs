@@ -95,6 +95,22 @@ fn ground() -> Vec<Material> {
 }
 
 #[test]
+fn a_hit_on_the_projection_plane_counts_and_has_its_depth() {
+    let corners = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
+    let triangle = Triangle::new(corners, FaceId(4));
+    let hit_from = |z: f64| {
+        let ray = TracedRay::new(DVec3::new(0.0, 0.0, z), DVec3::new(0.0, 0.0, -2.0));
+        let mut closest = None;
+        update_closest(&mut closest, &triangle, &ray, 6.0).then(|| closest.unwrap().hit(&ray, 5.0))
+    };
+    // t = 1 is on the plane; t = 3 is at the greatest range.
+    let [near, far] = [2.0, 6.0].map(|z| hit_from(z).unwrap());
+    assert_eq!((near.face, near.range, near.depth), (FaceId(4), 2.0, 5.0));
+    assert_eq!((far.range, far.depth, far.cos_incidence), (6.0, 15.0, 1.0));
+    assert!(hit_from(2.0_f64.next_down()).is_none() && hit_from(6.0_f64.next_up()).is_none());
+}
+
+#[test]
 fn faces_of_the_same_corners_tie_for_the_lowest_index() {
     // The same triangle three times, its cycle started at each vertex; seen from 2 m above.
     let vertices = vec![[-0.9, -1.1, 0.03], [1.3, -0.8, 0.1], [0.1, 1.7, -0.2]];
