@@ -177,14 +177,14 @@ properties CASES:
 paths CASES:
     RAYPENCIL_PATH_CASES={{ CASES }} cargo test --release -p raypencil-referee --lib -- --nocapture every_sign_and_every_hit
 
-# Random mutants of a crate against its fast tests; goes on where it was interrupted. PASS: first, or again (those that were
-# missed so far, after new tests were written): docs/evidence/mutants.md
-mutants CRATE PASS="first" SHARD="0/1":
-    tests/mutants.sh {{ CRATE }} {{ PASS }} {{ SHARD }}
+# Random mutants of a crate, all in one build, against its tests; goes on where it was interrupted. OPTIONS: --again (those that were
+# missed so far, after new tests were written), --only 'plane.rs:12', --part 0/2, ...: docs/evidence/mutants.md
+mutants CRATE *OPTIONS:
+    cargo run --quiet --release --manifest-path tests/mutants/Cargo.toml --target-dir target/mutants -- {{ CRATE }} {{ OPTIONS }}
 
-# The first pass of the named crates, or of all nine, and the table of their scores; goes on where it was interrupted
+# The table of the scores of these crates, or of all of which mutants were tested
 mutation-scores *CRATES:
-    tests/mutation_scores.sh --run {{ CRATES }}
+    cargo run --quiet --release --manifest-path tests/mutants/Cargo.toml --target-dir target/mutants -- --table {{ CRATES }}
 
 # The faults of tests/planted, planted one at a time in a clone, and the tests that catch them: docs/evidence/shared-faults.md
 planted-faults *AGAIN:

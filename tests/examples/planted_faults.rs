@@ -178,9 +178,9 @@ impl Run {
         let mut command = Command::new("cargo");
         match self.has_nextest {
             true => command
-                .args(["nextest", "run", "--cargo-profile=mutants", "--no-tests=pass", "--config-file"])
+                .args(["nextest", "run", "--cargo-profile=planted", "--no-tests=pass", "--config-file"])
                 .arg(self.clone.join("tests/planted/.nextest.toml")),
-            false => command.args(["test", "--profile=mutants"]),
+            false => command.args(["test", "--profile=planted"]),
         };
         command.arg(format!("--package=raypencil-{of}")).args(["--lib", "--tests"]).args(arguments);
         command.current_dir(&self.clone).env("CARGO_TARGET_DIR", &self.target);
