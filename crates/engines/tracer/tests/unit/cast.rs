@@ -200,6 +200,23 @@ proptest! {
 }
 
 #[test]
+fn a_packet_of_rays_with_ends_has_their_hits_at_any_size() {
+    let (place, eye) = (DVec3::ZERO, DVec3::new(0.1, 0.2, 2.0));
+    let row = [DVec3::new(-0.1, -0.9, 0.0), DVec3::new(0.1, -0.6, 0.0)];
+    for size in [-40, 0, 40].map(|exponent| libm::scalbn(1.0, exponent)) {
+        let cast = TracerCast::new(&sheet(size, place, 8));
+        // Directions of the same length at each size, and ends a little beyond the sheet.
+        let length = 1.0 / size;
+        let rays = fan(size, place, eye, row, 64, length);
+        let rays: Vec<_> =
+            rays.iter().map(|ray| CastRay { t_min: 0.0, t_max: 1.25 / length, ..*ray }).collect();
+        assert_eq!(how_many_together(&rays), 64);
+        compare_many(&cast, &rays).unwrap();
+        assert!(rays.iter().filter(|ray| cast.traverser().any(ray, Sides::Both)).count() > 50, "{size}");
+    }
+}
+
+#[test]
 fn rays_go_as_packets_while_that_pays() {
     // Few large faces, from above: a packet. Rays over corners too, where a packet meets several faces.
     let rays = fan(
