@@ -71,6 +71,9 @@ mod visibility;
 mod whole;
 
 #[cfg(test)]
+#[path = "../tests/common/soup.rs"]
+mod soup;
+#[cfg(test)]
 #[path = "../tests/common/splitmix.rs"]
 mod splitmix;
 

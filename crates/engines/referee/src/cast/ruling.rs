@@ -28,7 +28,7 @@
 //!
 //! # The search
 //!
-//! What is clearly [out of reach](super::square) is wrong at once. For the rest, displacements are tried, exactly: none; onto the
+//! What is clearly out of the reach of a whole [square](super::square) of displacements is wrong at once. For the rest, displacements are tried, exactly: none; onto the
 //! stated face, into the middle of what is near; off the faces that are in the way, over their nearest edge; and around, in 16
 //! directions and three sizes. Only what is found is excused: a missed witness makes the ruling stricter, never milder.
 
@@ -37,7 +37,7 @@ use raypencil_scene::{CastRay, FaceId, Precision, Reading, Sides};
 
 use super::margin::{Frame, onto_face};
 use super::query_ray::QueryRay;
-use super::square::around;
+use super::square::{Square, around};
 use super::triangle::Triangle;
 use super::{ExactCast, moved_bundle};
 use crate::hits::rounded_face::least_cosine;
@@ -135,18 +135,37 @@ impl ExactCast<'_> {
 }
 
 /// One stated answer.
-pub(super) struct Trial<'a> {
-    pub(super) cast: &'a ExactCast<'a>,
-    pub(super) ray: &'a CastRay,
-    pub(super) sides: Sides,
-    pub(super) precision: Precision,
-    pub(super) frame: Frame<'a>,
-    pub(super) stated: Reading<Triangle>,
+struct Trial<'a> {
+    cast: &'a ExactCast<'a>,
+    ray: &'a CastRay,
+    sides: Sides,
+    precision: Precision,
+    frame: Frame<'a>,
+    stated: Reading<Triangle>,
 }
 
 impl Trial<'_> {
+    /// Whether certainly none of the displacements up to `most` excuses the answer; `first` is what the ray meets where it is. All
+    /// moved rays pass outside of the stated face; or all meet another one, which is clearly in the way of the stated face, or of a
+    /// miss. Most wrong answers are of these kinds.
+    fn is_out_of_reach(&self, first: &[Triangle], most: f64) -> bool {
+        let square = Square::new(self.ray, most);
+        let CastRay { t_min, t_max, .. } = *self.ray;
+        let (stated, error_of_stated) = match &self.stated {
+            Reading::Hit(stated) if square.is_outside(stated) => return true,
+            Reading::Hit(stated) => (square.t(stated).low, self.range_error_in_t(stated)),
+            Reading::Miss => (f64::INFINITY, 0.0),
+            Reading::TooNear => return false,
+        };
+        first.iter().any(|face| {
+            let (t, error) = (square.t(face), self.range_error_in_t(face));
+            let is_within_ends = t.low - error >= t_min && t.high + error <= t_max;
+            is_within_ends && t.high + error + error_of_stated < stated && square.is_inside(face)
+        })
+    }
+
     /// Displacements that may excuse the answer, none larger than `most`.
-    pub(super) fn displacements(&self, first: &[Triangle], most: f64) -> Vec<[f64; 2]> {
+    fn displacements(&self, first: &[Triangle], most: f64) -> Vec<[f64; 2]> {
         let mut tried = vec![DVec2::ZERO];
         let query = QueryRay::new(self.ray);
         for face in self.sought(most) {
@@ -206,8 +225,13 @@ impl Trial<'_> {
         (t.middle(), self.range_error_in_t(face))
     }
 
+    /// The error that the range of a face is charged with, as a part of t.
+    fn range_error_in_t(&self, face: &Triangle) -> f64 {
+        self.cast.range_error(self.ray, face.id, self.precision) / QueryRay::length(self.ray)
+    }
+
     /// Whether the answer is right for the ray moved by this.
-    pub(super) fn excuses(&self, by: [f64; 2]) -> bool {
+    fn excuses(&self, by: [f64; 2]) -> bool {
         // No face is farther behind the origin than this; faces a little before t_min are asked too.
         let behind = -4.0 * self.cast.size(self.ray) / QueryRay::length(self.ray);
         let without_ends = CastRay { t_min: behind, t_max: f64::INFINITY, ..*self.ray };
@@ -288,3 +312,7 @@ const AROUND: [[f64; 2]; 16] = [
     [1.0, -1.0],
     [1.0, -0.5],
 ];
+
+#[cfg(test)]
+#[path = "../../tests/unit/cast_ruling.rs"]
+mod tests;

@@ -3,30 +3,25 @@
 //! Such a ray is a ray in intervals: what an interval says with certainty holds for each displacement of the square. Interval
 //! arithmetic is monotone, so it also holds for the rounded t of each moved ray, which lies in the interval of the square.
 //!
-//! Two questions are answered so, and nothing is known where the answer is no:
-//!
-//! * Is a stated answer out of the reach of all displacements? It is, where the rays of the square pass a stated face certainly on
-//!   opposite sides of two of its edges, so that none meets it; and where all of them meet another face that is clearly in the way of
-//!   the stated face, or of a miss. Most wrong answers are of these kinds.
-//! * Is the answer the same for all displacements? It is, where all rays of the square meet one face, clearly before all others.
+//! So it is known of most rays that their answer is the same for all displacements: all rays of the square meet one face, clearly
+//! before all others.
 
 use std::cmp::Ordering;
 
-use raypencil_scene::{CastRay, Reading, Side, Sides};
+use raypencil_scene::{CastRay, Side, Sides};
 
-use super::query_ray::{QueryRay, RayNumbers};
-use super::ruling::Trial;
+use super::query_ray::RayNumbers;
 use super::triangle::Triangle;
 use super::{ExactCast, moved_bundle};
 use crate::numbers::number::{Interval, Number};
 use crate::trees::bvh::RayBundle;
 
 /// A ray with all displacements of a square.
-struct Square(RayNumbers<Interval>);
+pub(super) struct Square(RayNumbers<Interval>);
 
 impl Square {
     /// All displacements whose parts are at most `most`.
-    fn new(ray: &CastRay, most: f64) -> Self {
+    pub(super) fn new(ray: &CastRay, most: f64) -> Self {
         Self(RayNumbers::moved(ray, [Interval::between(-most, most); 2]))
     }
 
@@ -36,13 +31,13 @@ impl Square {
     }
 
     /// Whether all rays pass certainly outside of the face.
-    fn is_outside(&self, face: &Triangle) -> bool {
+    pub(super) fn is_outside(&self, face: &Triangle) -> bool {
         let sides = self.sides(face);
         sides.contains(&Some(Ordering::Less)) && sides.contains(&Some(Ordering::Greater))
     }
 
     /// Whether all rays pass certainly inside the three edges.
-    fn is_inside(&self, face: &Triangle) -> bool {
+    pub(super) fn is_inside(&self, face: &Triangle) -> bool {
         let sides = self.sides(face);
         [Ordering::Less, Ordering::Greater].iter().any(|&side| sides == [Some(side); 3])
     }
@@ -58,7 +53,7 @@ impl Square {
     }
 
     /// What contains the t of a face's plane for every ray.
-    fn t(&self, face: &Triangle) -> Interval {
+    pub(super) fn t(&self, face: &Triangle) -> Interval {
         face.height(&self.0).over(face.approach(&self.0))
     }
 }
@@ -122,30 +117,6 @@ pub(super) fn around(ray: &CastRay, most: f64) -> RayBundle {
         start_radius: bundle.start_radius + 2.0 * most,
         max_range: bundle.max_range + 2.0 * most,
         ..bundle
-    }
-}
-
-impl Trial<'_> {
-    /// Whether none of the displacements up to `most` excuses the answer. `first` is what the ray meets where it is.
-    pub(super) fn is_out_of_reach(&self, first: &[Triangle], most: f64) -> bool {
-        let square = Square::new(self.ray, most);
-        let CastRay { t_min, t_max, .. } = *self.ray;
-        let (stated, error_of_stated) = match &self.stated {
-            Reading::Hit(stated) if square.is_outside(stated) => return true,
-            Reading::Hit(stated) => (square.t(stated).low, self.range_error_in_t(stated)),
-            Reading::Miss => (f64::INFINITY, 0.0),
-            Reading::TooNear => return false,
-        };
-        first.iter().any(|face| {
-            let (t, error) = (square.t(face), self.range_error_in_t(face));
-            let is_within_ends = t.low - error >= t_min && t.high + error <= t_max;
-            is_within_ends && t.high + error + error_of_stated < stated && square.is_inside(face)
-        })
-    }
-
-    /// The error that the range of a face is charged with, as a part of t.
-    pub(super) fn range_error_in_t(&self, face: &Triangle) -> f64 {
-        self.cast.range_error(self.ray, face.id, self.precision) / QueryRay::length(self.ray)
     }
 }
 
