@@ -4,7 +4,7 @@ use glam::DVec3;
 use raypencil_scene::{Renderer, Request};
 use raypencil_tracer::Tracer;
 
-use super::common::{SceneBuilder, close};
+use super::common::{SceneBuilder, close, screen};
 
 #[path = "../doc/scene.rs"]
 mod scene;
@@ -42,5 +42,24 @@ fn each_pixel_has_the_values_of_its_own_ray() {
         assert!(close(cos.at(i, j).get().unwrap(), 1.0 / per_depth, RELATIVE_TOLERANCE), "{i}, {j}");
         assert_eq!(point.at(i, j).get(), Some(DVec3::new(2.0 * across, 2.0 * down, 2.0)), "{i}, {j}");
         assert_eq!(normal.at(i, j).get(), Some(DVec3::NEG_Z), "{i}, {j}");
+    }
+}
+
+/// Neighbours share a normal only where they share a face: the screen is bent along x = 0.
+#[test]
+fn each_pixel_has_the_normal_of_its_own_face() {
+    let mut builder = SceneBuilder::new();
+    let [a, b, c, d] = [[0.0, -99.0, 2.0], [0.0, 99.0, 2.0], [64.0, 99.0, 34.0], [64.0, -99.0, 34.0]];
+    builder.faces = screen(2.0, [-16.0, 0.0], [-16.0, 16.0]).to_vec();
+    builder = builder.with([[a, b, c], [a, c, d]]);
+    let normal = builder.render().camera.unwrap().normal.unwrap();
+    // The plane z = 2 + x/2, from in front.
+    let bent = DVec3::new(0.5, 0.0, -1.0).normalize();
+    // x is 0 at column 31.75.
+    for (i, expected) in (0..40).map(|i| (i, if i < 32 { DVec3::NEG_Z } else { bent })) {
+        for j in 16..48 {
+            let normal = normal.at(i, j).get().unwrap();
+            assert!((normal - expected).length() < RELATIVE_TOLERANCE, "{i}, {j}: {normal}");
+        }
     }
 }
