@@ -134,3 +134,22 @@ fn a_refused_face_is_met_by_no_ray_of_a_block_however_narrow_the_margin() {
     let beside = Triangle::new([a, c, b].map(|[x, y, z]| [x - 2.0, y + 2.0, z]), FaceId(0));
     assert!(tile.misses_front(&SeenFace::new(beside.corners(), &tile)));
 }
+
+#[test]
+fn a_tile_is_beside_an_edge_only_with_all_its_corners() {
+    for corners in 0..16_u32 {
+        // A corner at the bound is not beyond it.
+        let edge = [0, 1, 2, 3].map(|k| if corners >> k & 1 == 1 { 2.0 } else { 1.0 });
+        assert_eq!(is_above(&edge, 1.0), corners == 15, "{corners:04b}");
+        assert_eq!(is_below(&edge.map(|part| -part), -1.0), corners == 15, "{corners:04b}");
+    }
+}
+
+#[test]
+fn the_margin_of_a_face_grows_with_the_square_of_its_distance() {
+    let corners = [DVec3::new(-3.0, 1.0, 2.0), DVec3::new(1.0, 8.0, -2.0), DVec3::new(4.0, 0.0, -7.0)];
+    for far in [0.25, 1.0, 32.0] {
+        let face = SeenFace::new(corners.map(|corner| corner * far), &Tile::EMPTY);
+        assert_eq!(face.margin, EDGE_MARGIN * (64.0 * far * far) + UNDERFLOW);
+    }
+}
