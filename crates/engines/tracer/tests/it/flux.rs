@@ -30,6 +30,14 @@ fn the_geometry_of_one_pencil() {
 }
 
 #[test]
+fn a_pencil_below_the_axis_is_seen_in_its_own_row() {
+    let mut builder = SceneBuilder::new();
+    builder.pose = Pose::from_position(DVec3::new(3.0, 0.5, 0.0));
+    // y / z = 1/4: 16 / 4 + 32.5 = 36.5 down.
+    assert_eq!(builder.pencil_return(0).pixel, Some(Pixel { i: 44, j: 36 }));
+}
+
+#[test]
 fn radiometric() {
     // P_k = 3 W * 0.8 / 3 = 0.8 W, r_d = 1/4, D^2 / 4 = 1/16 m^2:
     // 0.8 * 0.25 * 0.0625 * 0.8 * 0.512 / 4 = 1.28e-3 W.
