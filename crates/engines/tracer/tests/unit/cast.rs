@@ -2,14 +2,17 @@
 
 use std::cell::Cell;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3A};
+use obvhs::ray::Ray as BoxRay;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use raypencil_scene::{FaceId, Side};
 
 use super::super::frame::Frame;
 use super::super::in_box::{doubtful_below, moved_into_box};
+use super::super::quad::Quad;
 use super::*;
+use crate::traced_ray::TracedRay;
 
 /// All crossings of a ray by asking every face.
 fn exhaustive<'t>(cast: &'t TracerCast, ray: &CastRay, sides: Sides) -> Vec<Crossing<'t>> {
@@ -544,5 +547,51 @@ fn a_grazing_ray_is_judged_by_the_bound_and_by_the_box() {
             moved_into_box(9.0, corners, origin + 1e-9 * DVec3::NEG_Y, DVec3::X).is_nan() == (y == low.y)
         );
         assert!(moved_into_box(9.0, corners, origin + 1e-9 * DVec3::Y, DVec3::X).is_nan() == (y == high.y));
+    }
+}
+
+/// A quad refuses a face only beyond the bound of its page, 8 u s^2 + 96 u s + 1024 u^2 for corners at most s across the ray.
+#[test]
+fn a_quad_refuses_a_face_beyond_its_bound_and_not_before() {
+    let u = 1.0 / f64::from(1 << 24);
+    let down = TracedRay::new(DVec3::ZERO, DVec3::NEG_Z);
+    let box_ray = BoxRay::new(Vec3A::ZERO, Vec3A::NEG_Z, 0.0, 6.0);
+    // The side nearest to the ray is d beside it, and 2 s long: its edge function is 2 d s, those of the others are s^2.
+    let is_asked = |d: f64, s: f64, is_turned: bool| {
+        let (one, other) = if is_turned { (s, -s) } else { (-s, s) };
+        let mesh = mesh_of(&[[[d, one, -2.0], [d, other, -2.0], [s, 0.0, -2.0]]]);
+        let face = CastFace::of(&mesh, FaceId(0), 1.0);
+        Quad::new(0, &[face], DVec3::ZERO).may_meet(&Sheared::new(&down, &box_ray)) == 1
+    };
+    for s in [1.0, 256.0 * u] {
+        let bound = (8.0 * s * s + 96.0 * s + 1024.0 * u) * u;
+        for is_turned in [false, true] {
+            assert!(is_asked(0.99 * bound / (2.0 * s), s, is_turned), "{s} {is_turned}");
+            assert!(!is_asked(1.01 * bound / (2.0 * s), s, is_turned), "{s} {is_turned}");
+        }
+    }
+}
+
+/// Roundings of coordinates grow with the distance from their origin: so do the boxes, up to where rays are traced without them.
+#[test]
+fn boxes_are_padded_by_the_roundings_of_their_place() {
+    let square = |at: f64| [[at - 1.0, at - 1.0, 0.0], [at + 1.0, at - 1.0, 0.0], [at, at + 1.0, 0.0]];
+    let few_roundings = 4.0 * f64::EPSILON;
+    for at in [0.0, 2.0_f64.powi(30), 2.0_f64.powi(36)] {
+        let frame = Frame::of(&mesh_of(&[square(at)]));
+        let corners = square(at).map(|corner| frame.scale * DVec3::from_array(corner));
+        let lowest = corners[0].x - frame.middle.x;
+        let padding = lowest - f64::from(frame.padded_box(corners).min.x);
+        // 64 u for the way and the point of entry; the box's side is rounded to f32, downward.
+        let expected = 64.0 / f64::from(1 << 24) + few_roundings * frame.scale * (at + 1.0);
+        assert!(padding >= expected && padding < expected + 1.0 / f64::from(1 << 22), "{at}: {padding:e}");
+    }
+    // Rays from one point start where the roundings are at most u: up to coordinates of 2^26, scaled.
+    for (share, expected) in [(0.99, true), (1.01, false)] {
+        let scaled = share * 2.0_f64.powi(26);
+        let at = scaled / Frame::of(&mesh_of(&[square(0.0)])).scale;
+        let frame = Frame::of(&mesh_of(&[square(at)]));
+        let start = frame.start(DVec3::new(at, at, 1.0));
+        assert_eq!(start.is_some(), expected, "{at:e}");
     }
 }

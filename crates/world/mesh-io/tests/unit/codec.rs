@@ -79,3 +79,20 @@ fn every_compression_that_is_refused_has_a_name() {
         assert_eq!(name(number), None);
     }
 }
+
+/// RFC 8878, section 3.1.1: two bits say how long the size is, one that there is a single segment, two how long a number before it is.
+#[test]
+fn a_frame_of_a_single_segment_states_its_size() {
+    let stated = |flags: u8, rest: &[u8]| size_of_segment(&[&ZSTD_MAGIC[..], &[flags], rest].concat());
+    assert_eq!(stated(0x20, &[7]), Some(7));
+    // Of two bytes the size is 256 less.
+    assert_eq!(stated(0x60, &[1, 2]), Some(0x0201 + 256));
+    assert_eq!(stated(0xa0, &[1, 2, 3, 4]), Some(0x0403_0201));
+    assert_eq!(stated(0xe0, &[1, 2, 3, 4, 5, 6, 7, 8]), Some(0x0807_0605_0403_0201));
+    // Behind the number of a dictionary.
+    for (flags, number) in [(0x21, vec![9]), (0x22, vec![9; 2]), (0x23, vec![9; 4])] {
+        assert_eq!(stated(flags, &[number, vec![7]].concat()), Some(7));
+    }
+    // Cut off, or of several segments.
+    assert_eq!((stated(0x60, &[1]), stated(0x00, &[7])), (None, None));
+}

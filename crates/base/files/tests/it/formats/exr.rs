@@ -401,6 +401,30 @@ fn cut_and_changed_files_are_refused() {
     assert!(error.ends_with("cannot read: not a regular file"), "{error}");
 }
 
+/// Two blocks of one place leave another place without numbers.
+#[test]
+fn blocks_that_stand_for_one_place_twice_are_refused() {
+    let folder = Folder::new();
+    let path = folder.path("twice.exr");
+    // Line 3 says that it is line 2, and the second tile that it is the first.
+    let cases = [
+        (vec![3, 4 * WIDTH as i32], 2_i32, Blocks::ScanLines, "block 3: of line 2"),
+        (vec![1, 0, 0, 0, 16 * 8 * 4], 0, Blocks::Tiles(Vec2(16, 8)), "block 1: of tile 0, 0, level 0, 0"),
+    ];
+    for (header, place, blocks, found) in cases {
+        let encoding =
+            Encoding { compression: Compression::Uncompressed, blocks, line_order: LineOrder::Increasing };
+        foreign(&path, encoding, LayerAttributes::default(), &["range.T"]);
+        let mut bytes = std::fs::read(&path).unwrap();
+        let header: Vec<u8> = header.into_iter().flat_map(i32::to_le_bytes).collect();
+        let start = find(&bytes, &header) - header.len();
+        bytes[start..start + 4].copy_from_slice(&place.to_le_bytes());
+        std::fs::write(&path, bytes).unwrap();
+        let expected = format!("pixels, {found}; expected each part of the image once");
+        assert_eq!(refusal(&path, &Limits::default()), expected);
+    }
+}
+
 mod any_bytes {
     use super::*;
     use proptest::prelude::*;

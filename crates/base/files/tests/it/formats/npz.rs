@@ -98,15 +98,21 @@ fn limits_hold_for_all_arrays_of_an_archive_together() {
 #[test]
 fn an_array_that_is_there_twice_is_refused_wherever_the_second_one_stands() {
     let [one, two] = [1.0, 2.0].map(|number| npy("1, 1", &[number]));
-    let mut bytes =
-        archive(&[("aa.npy", &one), ("bb.npy", &one), ("cc.npy", &two)], CompressionMethod::Stored);
-    // In its own header, and in the list at the end.
-    while let Some(at) = bytes.windows(6).position(|name| name == b"cc.npy") {
-        bytes[at..at + 2].copy_from_slice(b"aa");
+    // A short name, and one whose length takes two bytes.
+    for length in [2, 300] {
+        let names = ["a", "b", "c"].map(|letter| letter.repeat(length));
+        let files = names.each_ref().map(|name| format!("{name}.npy"));
+        let entries: Vec<(&str, &[u8])> =
+            files.iter().map(String::as_str).zip([one.as_slice(), &one, &two]).collect();
+        let mut bytes = archive(&entries, CompressionMethod::Stored);
+        // In its own header, and in the list at the end.
+        while let Some(at) = bytes.windows(length).position(|name| name == names[2].as_bytes()) {
+            bytes[at..at + length].copy_from_slice(names[0].as_bytes());
+        }
+        let found = npz_from_bytes(&bytes, Path::new("a.npz"), &Limits::default());
+        assert_eq!(
+            found.expect_err("a refusal").to_string(),
+            format!("a.npz: array \"{}\": there twice; expected each array once", names[0])
+        );
     }
-    let found = npz_from_bytes(&bytes, Path::new("a.npz"), &Limits::default());
-    assert_eq!(
-        found.expect_err("a refusal").to_string(),
-        "a.npz: array \"aa\": there twice; expected each array once"
-    );
 }
