@@ -577,7 +577,7 @@ fn a_quad_refuses_a_face_beyond_its_bound_and_not_before() {
 fn boxes_are_padded_by_the_roundings_of_their_place() {
     let square = |at: f64| [[at - 1.0, at - 1.0, 0.0], [at + 1.0, at - 1.0, 0.0], [at, at + 1.0, 0.0]];
     let few_roundings = 4.0 * f64::EPSILON;
-    for at in [0.0, 2.0_f64.powi(30), 2.0_f64.powi(36)] {
+    for at in [0.0, libm::scalbn(1.0, 30), libm::scalbn(1.0, 36)] {
         let frame = Frame::of(&mesh_of(&[square(at)]));
         let corners = square(at).map(|corner| frame.scale * DVec3::from_array(corner));
         let lowest = corners[0].x - frame.middle.x;
@@ -588,7 +588,7 @@ fn boxes_are_padded_by_the_roundings_of_their_place() {
     }
     // Rays from one point start where the roundings are at most u: up to coordinates of 2^26, scaled.
     for (share, expected) in [(0.99, true), (1.01, false)] {
-        let scaled = share * 2.0_f64.powi(26);
+        let scaled = libm::scalbn(share, 26);
         let at = scaled / Frame::of(&mesh_of(&[square(0.0)])).scale;
         let frame = Frame::of(&mesh_of(&[square(at)]));
         let start = frame.start(DVec3::new(at, at, 1.0));
