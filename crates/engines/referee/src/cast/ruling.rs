@@ -28,9 +28,10 @@
 //!
 //! # The search
 //!
-//! What is clearly out of the reach of a whole [square](super::square) of displacements is wrong at once. For the rest, displacements are tried, exactly: none; onto the
-//! stated face, into the middle of what is near; off the faces that are in the way, over their nearest edge; and around, in 16
-//! directions and three sizes. Only what is found is excused: a missed witness makes the ruling stricter, never milder.
+//! What is clearly out of the reach of a whole [square](super::square) of displacements is wrong at once. For the rest,
+//! displacements are tried, exactly: none; onto the stated face, into the middle of what is near; off the faces that are in the way,
+//! over their nearest edge; and around, in 16 directions and three sizes. Only what is found is excused: a missed witness makes the
+//! ruling stricter, never milder.
 
 use glam::DVec2;
 use raypencil_scene::{CastRay, FaceId, Precision, Reading, Sides};

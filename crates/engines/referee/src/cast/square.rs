@@ -62,7 +62,7 @@ impl ExactCast<'_> {
     /// Whether the ray certainly meets the same face, clearly before all others, wherever it is moved by at most `most` along both
     /// vectors of [`CastRay::across`]; or misses everywhere. A sensor's ray must also be clearly not, or clearly, too near.
     ///
-    /// This is far quicker than [`margins`](Self::margins), and says less: `false` is no statement.
+    /// This looks once at the faces around, in intervals, and says less than [`margins`](Self::margins): `false` is no statement.
     ///
     /// ```
     /// use glam::DVec3;

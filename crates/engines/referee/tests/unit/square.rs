@@ -46,3 +46,38 @@ fn a_square_is_steady_up_to_the_margin_and_no_farther() {
     }
     assert!(hits > 60 && misses > 20 && far_less < 20, "{hits} {misses} {far_less}");
 }
+
+/// Where an interval has nothing to lose, the square is held from both sides: all three edges of this face are 1/4 away.
+#[test]
+fn a_square_is_as_large_as_it_says() {
+    let mesh =
+        Triangles::new(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]]).expect("a mesh");
+    let ray = CastRay::new(DVec3::new(0.25, 0.25, 1.0), DVec3::NEG_Z);
+    let is_steady = |most: f64| ExactCast::new(&mesh).is_steady(&ray, Sides::Both, most);
+    assert!(is_steady(0.25 - 1e-12));
+    assert!(!is_steady(0.25));
+}
+
+/// A face that only the corner of the square reaches is looked at, in whatever direction the corner is.
+#[test]
+fn the_corners_of_a_square_are_looked_at() {
+    let mut random = SplitMix64(7);
+    for _ in 0..200 {
+        let direction = DVec3::from_array([0; 3].map(|_| random.part()));
+        let ray = CastRay::new(DVec3::ZERO, direction);
+        let [u, v] = ray.across();
+        // Eight small faces beside the ray in each of four places, one of them near.
+        let mut corners = Vec::new();
+        for at in [0.3 * (u + v), 50.0 * (u + v), 50.0 * (u - v), 50.0 * (v - u)] {
+            for k in 0..8 {
+                let at = at + direction * (1.0 + f64::from(k) / 100.0);
+                corners.extend([at, at + 0.001 * u, at + 0.001 * v].map(|corner| corner.to_array()));
+            }
+        }
+        let faces = (0..32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        let mesh = Triangles::new(corners, faces).expect("a mesh");
+        let is_steady = |most: f64| ExactCast::new(&mesh).is_steady(&ray, Sides::Both, most);
+        assert!(is_steady(0.1), "{direction}");
+        assert!(!is_steady(0.301), "{direction}");
+    }
+}
