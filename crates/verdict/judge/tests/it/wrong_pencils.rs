@@ -35,12 +35,19 @@ fn a_right_pixel_stays_right_where_its_pencils_are_wrong() {
     // Each a fifth larger than the one before, so that a bound that is a quarter off is noticed.
     let sizes: Vec<f64> =
         std::iter::successors(Some(1e-15), |by| Some(1.2 * by)).take_while(|by| *by < 1e-10).collect();
-    let wrong_by_size =
-        |output: &RenderOutput| -> Vec<u64> { sizes.iter().map(|by| brighter(output, *by)).collect() };
-    let expected = wrong_by_size(&output);
-    assert_eq!((expected[0], expected[sizes.len() - 1]), (0, lit));
+    let wrong_by_size = |output: &RenderOutput, sizes: &[f64]| -> Vec<u64> {
+        sizes.iter().map(|by| brighter(output, *by)).collect()
+    };
+    let all = wrong_by_size(&output, &sizes);
+    assert_eq!((all[0], all[sizes.len() - 1]), (0, lit));
+    // Beside wrong pencils, all of which are judged anew for each size: where the first pixels are found wrong, where the last ones
+    // are, and between.
+    let first = all.iter().position(|wrong| *wrong > 0).expect("a size that is noticed");
+    let last = all.iter().position(|wrong| *wrong == lit).expect("a size that all pixels notice");
+    let near = [first - 1, first, first.midpoint(last), last - 1, last];
+    let (tried, expected): (Vec<f64>, Vec<u64>) = near.into_iter().map(|k| (sizes[k], all[k])).unzip();
     for wrong in [lost, hidden] {
-        assert_eq!(wrong_by_size(&wrong), expected);
+        assert_eq!(wrong_by_size(&wrong, &tried), expected);
     }
 }
 
