@@ -220,6 +220,9 @@ mod tests {
         let ceiling = Plane::new(&[a, c, b], exact.sensor_from_scene());
         assert_eq!(seen(&exact, &ceiling), [false, false, true]);
         assert_eq!(seen(&paper, &ceiling), [false; 3]);
+        // A floor through the origin is seen edge-on from there: as printed, from no row.
+        let level = Plane::new(&corners.map(|corner| corner.with_y(0.0)), exact.sensor_from_scene());
+        assert_eq!((seen(&exact, &level), seen(&paper, &level)), ([true, false, false], [false; 3]));
     }
 
     #[test]

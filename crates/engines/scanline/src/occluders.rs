@@ -203,3 +203,7 @@ impl<'a> Occluders<'a> {
         (bounds, spp / max(p, q, r))
     }
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/occluders.rs"]
+mod tests;

@@ -44,3 +44,30 @@ pub(crate) fn plane_in_scene(vertices: &[DVec3; 3], sensor_from_scene: &SensorFr
 fn is_lower(p: &DVec3, q: &DVec3) -> bool {
     (p.x, p.y, p.z) < (q.x, q.y, q.z)
 }
+
+#[cfg(test)]
+mod tests {
+    use raypencil_scene::Pose;
+
+    use super::*;
+
+    #[test]
+    fn a_face_has_the_same_plane_wherever_its_cycle_starts() {
+        let sensor_from_scene = SensorFromScene::from_pose(&Pose::from_position(DVec3::new(0.7, -0.3, 0.9)));
+        // Vertices whose products are rounded, and which differ in each coordinate.
+        let [a, b, c] =
+            [[2.41, -2.82, -2.85], [0.25, 2.63, -0.71], [-1.7, -0.47, -2.83]].map(DVec3::from_array);
+        let of = |vertices: [DVec3; 3]| plane_in_scene(&vertices, &sensor_from_scene);
+        assert_eq!(of([a, b, c]), of([b, c, a]));
+        assert_eq!(of([a, b, c]), of([c, a, b]));
+        // It starts at the lowest, c: from the other two the normal is rounded otherwise.
+        let from = |a: DVec3, b: DVec3, c: DVec3| (b - a).cross(c - a);
+        assert_eq!(of([a, b, c]).0, from(c, a, b));
+        assert_ne!(from(c, a, b), from(a, b, c));
+        assert_ne!(from(c, a, b), from(b, c, a));
+        // Vertices that share the first coordinate, or the first two.
+        let [a, b] = [DVec3::new(-1.7, 0.2, 1.1), DVec3::new(-1.7, -0.47, 0.7)];
+        assert_eq!(of([a, b, c]), of([b, c, a]));
+        assert_eq!(of([a, b, c]), of([c, a, b]));
+    }
+}

@@ -48,3 +48,25 @@ pub(crate) fn outside_bits(
 pub(crate) fn screen_is_beyond_one_edge(normals: [DVec3; 3], screen_corners: [DVec3; 4]) -> bool {
     normals.iter().any(|n| screen_corners.iter().all(|q| n.dot(*q) > 0.0))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_edge_through_a_corner_of_the_screen_does_not_leave_the_screen_beside_it() {
+        // The screen is x/z and y/z from -1 to 1. The edge is the line x/z = -1 of its left side, or one beside it.
+        let corners =
+            [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| DVec3::new(x, y, 1.0));
+        let inner = DVec3::new(-1.0, 0.0, -9.0);
+        let is_beyond = |at: f64| {
+            let n = DVec3::new(1.0, 0.0, -at);
+            [[n, inner, inner], [inner, n, inner], [inner, inner, n]]
+                .map(|normals| screen_is_beyond_one_edge(normals, corners))
+        };
+        assert_eq!(
+            (is_beyond(-1.0), is_beyond(-1.001), is_beyond(-0.999)),
+            ([false; 3], [true; 3], [false; 3])
+        );
+    }
+}

@@ -160,6 +160,51 @@ impl StripeVolume {
 mod tests {
     use super::*;
 
+    /// The pieces of a face, and the most that a corner of one is outside of the volume, metres.
+    fn pieces_of(stripe: StripeVolume, vertices: [DVec3; 3]) -> (usize, f64) {
+        let StripeVolume { grid_distance: g, half_width: w, half_thickness: half } = stripe;
+        let edges = [0, 1, 2].map(|k| Edge {
+            first: vertices[k],
+            second: vertices[(k + 1) % 3],
+            reversed: false,
+            line: (),
+        });
+        let (mut count, mut outside) = (0, f64::NEG_INFINITY);
+        stripe.clip(vertices, &edges, |piece| {
+            count += 1;
+            for p in piece.points {
+                outside = outside.max(g - p.z).max(p.y.abs() - half).max(p.x.abs() - p.z * w / g);
+            }
+        });
+        (count, outside)
+    }
+
+    #[test]
+    fn what_is_left_of_a_face_is_within_the_volume() {
+        let stripe = StripeVolume { grid_distance: 1.0, half_width: 1.0, half_thickness: 0.5 };
+        // Across the plane of the grid, which leaves four corners and so two pieces, or three corners.
+        let [near, far, other] = [[0.1, 0.2, 0.5], [0.3, -0.1, 2.0], [-0.4, 0.1, 3.0]].map(DVec3::from_array);
+        let behind = near.with_z(-0.5);
+        for (vertices, pieces) in
+            [([near, far, other], 2), ([behind, far, other], 2), ([near, behind, far], 1), ([near; 3], 0)]
+        {
+            let (count, outside) = pieces_of(stripe, vertices);
+            assert_eq!(count, pieces, "{vertices:?}");
+            assert!(outside < 1e-15, "{vertices:?} {outside}");
+        }
+        // Across each of the sides.
+        for corner in [[0.0, 0.9, 2.0], [0.0, -0.9, 2.0], [4.0, 0.0, 2.0], [-4.0, 0.0, 2.0]] {
+            let (count, outside) = pieces_of(stripe, [DVec3::from_array(corner), far, other]);
+            assert_eq!(count, 2, "{corner:?}");
+            assert!(outside < 1e-15, "{corner:?} {outside}");
+        }
+        // A vertex on the plane of the grid is within: it adds no corner.
+        let on_grid = near.with_z(1.0);
+        for vertices in [[on_grid, far, other], [far, on_grid, other], [far, other, on_grid]] {
+            assert_eq!(pieces_of(stripe, vertices).0, 1, "{vertices:?}");
+        }
+    }
+
     #[test]
     fn a_shared_side_is_the_same_line_in_both_faces() {
         let stripe = StripeVolume { grid_distance: 1.0, half_width: 1.0, half_thickness: 0.5 };

@@ -87,9 +87,13 @@ fn unseen_faces_are_skipped_only_if_asked_for() {
 #[test]
 fn a_face_that_the_spp_cuts_may_touch_any_row() {
     let cut = [[-0.5, -0.3, 2.0], [0.0, 0.4, 0.5], [0.5, -0.3, 2.0]];
+    // Two of three vertices are behind it, whichever they are.
+    let [a, b, c] = [[-0.5, -0.3, 0.5], [0.0, 0.4, 0.5], [0.5, -0.3, 2.0]];
     let behind = [[-0.5, -0.3, 0.9], [0.0, 0.4, 0.5], [0.5, -0.3, 0.9]];
     for skip_unseen in [true, false] {
-        assert_eq!(rows_of(cut, skip_unseen), Some(0..8));
+        for cut in [cut, [a, b, c], [b, c, a], [c, a, b]] {
+            assert_eq!(rows_of(cut, skip_unseen), Some(0..8), "{cut:?}");
+        }
         assert_eq!(rows_of(behind, skip_unseen), None);
     }
 }

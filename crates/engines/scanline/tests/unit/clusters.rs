@@ -99,16 +99,33 @@ fn a_million_faces_in_one_place_and_nested_ones_are_clustered_quickly() {
 #[test]
 fn neighbours_on_the_curve_are_neighbours_in_space() {
     assert_eq!((spread(0b1011), spread(0x1f_ffff)), (0b1_000_001_001, 0x1249_2492_4924_9249));
-    // A plain of 32 x 32 unit squares, two faces each. The box of a cluster has sides of some 7 m, not of 32.
-    let vertices = (0..33 * 33).map(|k| [(k % 33) as f32, (k / 33) as f32, 0.0]).collect();
-    let square = |k: u32| {
-        let a = k / 32 * 33 + k % 32;
-        [[a, a + 1, a + 34], [a, a + 34, a + 33]]
-    };
-    let mesh = ground_of(vertices, (0..1024).flat_map(square).collect());
-    for cluster in &Clusters::new(&mesh).clusters {
-        let Bounds { low, high } = cluster.bounds;
-        assert!((0..3).all(|k| high[k] - low[k] <= 16.0), "{cluster:?}");
+    // A plain of 32 x 32 squares, two faces each. The box of a cluster has sides of some 7 squares, not of 32. Squares of a millimetre
+    // are sorted as those of a metre are.
+    for side in [1.0, 1.0 / 1024.0] {
+        let vertices = (0..33 * 33).map(|k| [(k % 33) as f32 * side, (k / 33) as f32 * side, 0.0]).collect();
+        let square = |k: u32| {
+            let a = k / 32 * 33 + k % 32;
+            [[a, a + 1, a + 34], [a, a + 34, a + 33]]
+        };
+        let mesh = ground_of(vertices, (0..1024).flat_map(square).collect());
+        for cluster in &Clusters::new(&mesh).clusters {
+            let Bounds { low, high } = cluster.bounds;
+            assert!((0..3).all(|k| high[k] - low[k] <= 16.0 * side), "{side} {cluster:?}");
+        }
+    }
+}
+
+#[test]
+fn a_box_is_widened_by_a_part_of_its_farthest_offset() {
+    // From (10, 20, 30) the offsets are -2 to 1, -1 to 3 and -6 to 5: the farthest are 2, 3 and 6, and 7 together.
+    let bounds = Bounds { low: [8.0, 19.0, 24.0], high: [11.0, 23.0, 35.0] };
+    let corners = bounds.corners(DVec3::new(10.0, 20.0, 30.0));
+    let widening = 7.0 * RELATIVE_WIDENING;
+    let [x, y, z] =
+        [[-2.0, 1.0], [-1.0, 3.0], [-6.0, 5.0]].map(|[low, high]| [low - widening, high + widening]);
+    for corner in 0..8 {
+        let expected = DVec3::new(x[corner % 2], y[corner / 2 % 2], z[corner / 4]);
+        assert_eq!(corners.iter().filter(|found| **found == expected).count(), 1, "{expected} {corners:?}");
     }
 }
 

@@ -1,5 +1,7 @@
 //! Unit tests of `shares`: sums and single shares against closed forms.
 
+use raypencil_scene::Pose;
+
 use super::*;
 
 fn beam(columns: u32, rows: u32, profile: Profile) -> Beam {
@@ -71,4 +73,15 @@ fn a_beam_narrower_than_its_pencils_keeps_its_power() {
     // All exponentials of the definition are 0 in f64: exp(-2 (0.14 / 1e-6)^2).
     let narrow = beam(4, 1, Profile::Gaussian { half_width: 1e-6 });
     assert_eq!(ColumnShares::new(&narrow).watts, [0.0, 1.5, 1.5, 0.0]);
+}
+
+#[test]
+fn shares_serve_the_beams_that_they_were_made_for_in_their_order() {
+    let at = |beam: &Beam| Mounted { scene_from_sensor: Pose::IDENTITY, sensor: *beam };
+    let [one, other] = [4, 8].map(|columns| beam(columns, 2, Profile::Paper));
+    let shares = [one, other].map(|beam| ColumnShares::new(&beam));
+    assert!(ColumnShares::fit(&shares, &[at(&one), at(&other)]));
+    assert!(!ColumnShares::fit(&shares, &[at(&other), at(&one)]));
+    assert!(!ColumnShares::fit(&shares, &[at(&one)]));
+    assert!(!ColumnShares::fit(&shares[..1], &[at(&one), at(&other)]));
 }

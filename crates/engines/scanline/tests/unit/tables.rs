@@ -58,3 +58,12 @@ fn infinities_and_nan_stay_on_the_screen() {
     assert_eq!((axis.first_at_or_after(-f64::INFINITY), axis.end_at_or_before(-f64::INFINITY)), (0, 0));
     assert_eq!(axis.end_at_or_before(f64::NAN), 0);
 }
+
+#[test]
+fn a_guess_that_is_too_large_is_corrected() {
+    // So far from the principal point that neighbouring centres are one number. The guess for it is the second of them.
+    let axis = Axis::pixels(4, 2.0 / f64::EPSILON, 1.0);
+    assert_eq!(axis.centre(1), axis.centre(2));
+    assert_eq!(axis.approximate_index(axis.centre(1)), 2.0);
+    assert_eq!((axis.first_at_or_after(axis.centre(1)), axis.end_at_or_before(axis.centre(1))), (1, 3));
+}

@@ -1,6 +1,7 @@
 //! Equation (1) and the radiometric model on a plane wall, against numbers derived by hand.
 
-use raypencil_scene::{Filter, FluxModel, Pixel, Profile};
+use glam::DVec3;
+use raypencil_scene::{Beam, Filter, FluxModel, Pixel, Profile};
 
 use super::rig::{Rig, at, four_pencils, one_pencil, return_at, reversed, sum, wall};
 
@@ -43,6 +44,26 @@ fn geometry_of_a_return() {
     assert_close(returned.depth, 2.0);
     assert_close(returned.cos_off_axis, 2.0 / 3.0);
     assert_close(returned.cos_view, 2.0 / 3.0);
+}
+
+#[test]
+fn the_point_and_the_normal_of_a_pixel() {
+    // The ray through the middle of pixel (160, 192) runs at x/z = 32.25/64 and y/z = 64.25/64 from (0, -2, 0).
+    let camera = Rig::new().render().camera.expect("asked for");
+    let point = camera.point.expect("asked for").at(160, 192).get().expect("a hit");
+    assert!((point - DVec3::new(1.007_812_5, 0.007_812_5, 2.0)).length() < 1e-14, "{point}");
+    assert_eq!(camera.normal.expect("asked for").at(160, 192).get(), Some(DVec3::new(0.0, 0.0, -1.0)));
+}
+
+#[test]
+fn a_hit_at_the_maximum_range_counts() {
+    // The pencil along the axis meets the wall at 2 m exactly.
+    let range_with = |max_range: f64| {
+        let beam = at(0.0, 0.0, 0.0, Beam { max_range, ..one_pencil() });
+        let frame = Rig { beams: vec![beam], ..Rig::new() }.render();
+        frame.beams[0].range.as_ref().expect("asked for").at(0, 0).get()
+    };
+    assert_eq!((range_with(2.0), range_with(2.0_f64.next_down())), (Some(2.0), None));
 }
 
 #[test]
@@ -121,7 +142,7 @@ fn a_face_reflects_by_its_own_material() {
 #[test]
 fn the_flux_of_a_pixel_is_the_sum_over_its_pencils_in_their_order() {
     let mut rig = Rig::new();
-    rig.beams[0].sensor = raypencil_scene::Beam { columns: 1024, rows: 16, ..four_pencils() };
+    rig.beams[0].sensor = Beam { columns: 1024, rows: 16, ..four_pencils() };
     rig.beams.push(at(-0.4, 0.1, 0.0, four_pencils()));
     let frame = rig.render();
     for (beam, image) in frame.flux.iter().enumerate() {

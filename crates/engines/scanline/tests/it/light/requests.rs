@@ -26,6 +26,31 @@ fn returns_do_not_depend_on_what_else_is_asked_for() {
 }
 
 #[test]
+fn a_quantity_does_not_depend_on_what_else_is_asked_for() {
+    let scene = rig_on(builtin("pyramids", 0.25).unwrap(), 5e-3);
+    let all = Scanline::exact().render(&scene, &Request::MAPS);
+    let none = Quantities::NONE;
+    for quantities in [
+        Quantities { range: true, ..none },
+        Quantities { depth: true, ..none },
+        Quantities { face: true, ..none },
+        Quantities { point: true, ..none },
+        Quantities { normal: true, ..none },
+        Quantities { cos_incidence: true, ..none },
+    ] {
+        let alone = Scanline::exact().render(&scene, &Request { quantities, ..Request::MAPS });
+        for (alone, all) in alone.maps().zip(all.maps()) {
+            assert!(!quantities.range || alone.range == all.range);
+            assert!(!quantities.depth || alone.depth == all.depth);
+            assert!(!quantities.face || alone.face == all.face);
+            assert!(!quantities.point || alone.point == all.point);
+            assert!(!quantities.normal || alone.normal == all.normal);
+            assert!(!quantities.cos_incidence || alone.cos_incidence == all.cos_incidence);
+        }
+    }
+}
+
+#[test]
 fn jittered_pencils_are_unsupported() {
     let scene = rig_on(builtin("pyramids", 0.25).unwrap(), 5e-3);
     let jittered = Request { sampling: Sampling::Jittered { seed: 1 }, ..Request::EVERYTHING };
@@ -82,4 +107,32 @@ fn cached_tables_are_those_of_the_scene() {
     check(&rig);
     rig.camera.width = 200;
     check(&rig);
+}
+
+#[test]
+fn cached_clusters_are_those_of_the_terrain() {
+    // One renderer for two grounds in turn.
+    let caching = Scanline::exact();
+    let scenes = ["pyramids", "facets"].map(|name| rig_on(builtin(name, 0.25).unwrap(), 5e-3));
+    for scene in [&scenes[0], &scenes[1], &scenes[0]] {
+        let (cached, new) =
+            (caching.render(scene, &Request::MAPS), Scanline::exact().render(scene, &Request::MAPS));
+        assert!(cached.camera == new.camera && cached.beams == new.beams);
+    }
+}
+
+#[test]
+fn each_beam_has_the_filter_of_its_own_wavelength() {
+    // Two beams that differ in their wavelength alone: each has the flux that it has by itself.
+    let mut rig = Rig { model: raypencil_scene::FluxModel::Eq1, ..Rig::new() };
+    let filter = Filter::Interference { centre: 820e-9, width: 30e-9, index: 2.0 };
+    rig.camera.lens = Lens { filter, ..rig.camera.lens };
+    rig.beams.push(rig.beams[0]);
+    rig.beams[1].sensor.wavelength = 800e-9;
+    let both = rig.render();
+    for beam in [0, 1] {
+        let alone = Rig { beams: vec![rig.beams[beam]], ..rig.clone() };
+        assert_eq!(alone.render().returns[0], both.returns[beam], "{beam}");
+    }
+    assert_ne!(both.returns[0].flux, both.returns[1].flux);
 }
