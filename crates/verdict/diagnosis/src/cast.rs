@@ -80,3 +80,34 @@ pub(crate) fn cast(scene: &Scene, place: Place, rules: Rules) -> Cast {
     });
     Cast { hit, is_on_edge }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use raypencil_scene::{Material, SensorId};
+
+    use super::*;
+    use crate::it::candidates::walls;
+    use crate::rules::Numbers;
+
+    #[test]
+    fn a_ray_is_on_an_edge_within_a_part_of_the_volume() {
+        let base = walls().scene;
+        let corners = vec![[0.0, -10.0, 20.0], [0.0, 10.0, 20.0], [10.0, 0.0, 20.0]];
+        let plaster = vec![Material { name: "plaster".into(), reflectivity: 0.5 }];
+        let mesh = Mesh::new(DVec3::ZERO, corners, vec![[0, 1, 2]], vec![0], plaster).expect("a mesh");
+        let scene = Scene::new(Arc::new(mesh), *base.camera(), vec![], base.atmosphere(), base.flux_model());
+        let scene = scene.expect("a scene");
+        // The ray at x/z = e/32 passes the edge x = 0 by a volume of 25 e, of which 500 m^2 times the ray's vector is the measure.
+        let place = Place { sensor: SensorId::Camera, i: 32, j: 24 };
+        let limit = BESIDE_EDGE * 500.0 * DVec3::new(0.0, 0.03125, 2.0).length() / 25.0;
+        let found = |beside: f64| {
+            let numbers = Numbers { offset: [-0.5 + beside * limit, 0.0], ..Numbers::SCENE };
+            let cast = cast(&scene, place, Rules { numbers, ..Rules::CONTRACT });
+            (cast.hit.is_some(), cast.is_on_edge)
+        };
+        assert_eq!([0.9, 1.1].map(found), [(true, true), (true, false)]);
+        assert_eq!([-0.9, -1.1].map(found), [(false, true), (false, false)]);
+    }
+}

@@ -229,4 +229,22 @@ mod tests {
         }
         assert!(!is(1.26, 1.27, true) && !is(1.26, 1.26, false));
     }
+
+    #[test]
+    fn without_a_shadow_test_a_hidden_pencil_has_any_flux_but_a_negative_one() {
+        let bench = crate::it::candidates::pyramids();
+        let sensors = [0, 1].map(SensorId::Beam);
+        let case = Case { truth: &bench.truth, recorded: &bench.exact, sensors: &sensors, tolerance: 1e-9 };
+        let cells = (0..4).flat_map(|j| (0..48).map(move |i| (i, j)));
+        let mut places =
+            sensors.iter().flat_map(|&sensor| cells.clone().map(move |(i, j)| Place { sensor, i, j }));
+        let is_hidden = |place: &Place| would_be_seen(case, *place) && !bench.truth.visibility(*place).0;
+        let place = places.find(is_hidden).expect("a hidden hit");
+        let flux = Channel { sensor: place.sensor, item: Quantity::PencilFlux.into() };
+        let made_right = |stated: f64| {
+            let value = foretold(Mistake::NoShadowTest, case, flux, place, Value::Number(stated));
+            value == flux.at(bench.truth.answers(), place)
+        };
+        assert!(made_right(0.0) && made_right(1e-9) && !made_right(-1e-9));
+    }
 }

@@ -277,3 +277,27 @@ pub(crate) fn lengths(case: Case<'_>, places: &[Place], base: Option<&Correction
     let of_both: Vec<Mistake> = of_both.collect();
     of_both.into_iter().chain(ranges).chain(depths).map(Correction::from).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_needs_twelve_pairs_that_differ_in_x() {
+        // y = 2 - 3 x at x = 0 to 11.
+        let pairs: Vec<(f64, f64)> = (0..12).map(f64::from).map(|x| (2.0 - 3.0 * x, x)).collect();
+        assert_eq!(line_through(&pairs), Some([2.0, -3.0]));
+        assert_eq!(line_through(&pairs[1..]), None);
+        let above_each_other: Vec<(f64, f64)> = pairs.iter().map(|(y, _)| (*y, 5.0)).collect();
+        assert_eq!(line_through(&above_each_other), None);
+        let level: Vec<(f64, f64)> = pairs.iter().map(|(_, x)| (5.0, *x)).collect();
+        assert_eq!(line_through(&level), None);
+    }
+
+    #[test]
+    fn quanta_go_from_five_metres_to_a_ten_millionth() {
+        let all = quanta();
+        assert_eq!((all.len(), all[0], all[1], all[all.len() - 1]), (44, 5.0, 2.0, 1e-7));
+        assert!(all.is_sorted_by(|a, b| a >= b) && all.contains(&0.05) && all.contains(&0.0625));
+    }
+}

@@ -60,3 +60,54 @@ fn what_a_file_rounds_grows_with_the_unit_and_is_no_error() {
     // What was not corrected is not absorbed.
     assert!(!absorbed(Storage::F16, 3.001, 3.001, 3.0));
 }
+
+/// The first pencil of a beam that hits something.
+fn a_hit(sensor: SensorId) -> Place {
+    let mut cells = (0..4).flat_map(|j| (0..48).map(move |i| Place { sensor, i, j }));
+    cells.find(|place| pyramids().truth.hit(*place).is_some()).expect("a hit")
+}
+
+#[test]
+fn points_are_compared_as_parts_of_their_distances() {
+    let bench = pyramids();
+    let sensors = [SensorId::Beam(0)];
+    let [range, point] = [Quantity::Range, Quantity::Point]
+        .map(|quantity| Channel { sensor: sensors[0], item: quantity.into() });
+    let case = Case { truth: &bench.truth, recorded: &bench.exact, sensors: &sensors, tolerance: 1e-9 };
+    let (hit, answers) = (a_hit(sensors[0]), bench.truth.answers());
+    let (Value::Number(length), Value::Vector(exact)) = (range.at(answers, hit), point.at(answers, hit))
+    else {
+        panic!("a length and a point")
+    };
+    // From the origin and from the sensor.
+    let most = 1e-9 * (exact.length() + length);
+    let is =
+        |off: f64| is_near(case, point, hit, Value::Vector(exact + DVec3::X * off), Value::Vector(exact));
+    assert!(is(0.999 * most) && !is(1.001 * most));
+}
+
+/// The tolerance is a 64th of the median error, of vectors as of numbers; without an error it is the largest.
+#[test]
+fn the_tolerance_is_a_part_of_the_errors_that_are_to_be_explained() {
+    let bench = pyramids();
+    let sensor = SensorId::Beam(0);
+    let channels = channels_of(&bench.exact, &[sensor]);
+    let of =
+        |quantity| *channels.iter().find(|channel| channel.item.quantity == quantity).expect("a channel");
+    let [range, point] = [of(Quantity::Range), of(Quantity::Point)];
+    let exact = bench.truth.answers();
+    let hit = a_hit(sensor);
+    // Numbers and points that are off by 2^-24 of themselves.
+    let off = 1.0 + 1.0 / f64::from(1 << 24);
+    let mut recorded = bench.exact.clone();
+    let map = recorded.answers.maps.iter_mut().find(|map| map.sensor == sensor).expect("a map");
+    if let (Value::Number(length), Value::Vector(vector)) = (range.at(exact, hit), point.at(exact, hit)) {
+        map.range.as_mut().expect("ranges").set(hit.i, hit.j, Some(length * off).into());
+        map.point.as_mut().expect("points").set(hit.i, hit.j, Some(vector * off).into());
+    }
+    for channel in [range, point] {
+        let tolerance = tolerance_of(&bench.truth, &recorded, &[(channel, hit)]);
+        assert!((tolerance * f64::from(1 << 30) - 1.0).abs() < 1e-6, "{tolerance}");
+    }
+    assert_eq!(tolerance_of(&bench.truth, &recorded, &[]), TRIAL_TOLERANCE);
+}
