@@ -215,3 +215,7 @@ impl Rotation {
         sum / self.norm_squared
     }
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/rays.rs"]
+mod tests;

@@ -72,14 +72,14 @@ pub(super) enum Walk {
 const LEAST_OF_MESH: i32 = -300;
 const LEAST_OF_DIRECTION: i32 = -900;
 
-/// The power of two from which `size` is less than a factor of two away, upward; not below 2^least, nor above 2^300.
+/// The power of two from which `size` is less than a factor of two away, upward; not below 2^least, nor above 2^300. Of a size that is
+/// not normal it is 1.
 #[inline]
 fn power_of_two_above(size: f64, least: i32) -> f64 {
     let exponent = if size.is_normal() {
         (size.to_bits() >> (f64::MANTISSA_DIGITS - 1)) as i32 - (f64::MAX_EXP - 2)
-    } else if size > 0.0 {
-        libm::frexp(size).1
     } else {
+        // Of a mesh that is less wide no face has an area, at any scale.
         0
     };
     f64::from_bits(((exponent.clamp(least, 300) + f64::MAX_EXP - 1) as u64) << (f64::MANTISSA_DIGITS - 1))
@@ -144,13 +144,7 @@ impl Frame {
             return Walk::AllFaces;
         }
         for k in 0..3 {
-            if unit[k].abs() < 1e-30 {
-                // Over any way that matters such a ray stays where it is.
-                if start[k].abs() > self.half_width[k] {
-                    return Walk::Nothing;
-                }
-                continue;
-            }
+            // By a part of 0 the quotients are infinite: of opposite signs if the ray stays inside, and else of the same.
             let (a, b) =
                 ((-self.half_width[k] - start[k]) / unit[k], (self.half_width[k] - start[k]) / unit[k]);
             entry = entry.max(a.min(b));
@@ -161,7 +155,7 @@ impl Frame {
         }
         let from = start + unit * entry;
         let narrow = |v: DVec3| Vec3A::new(v.x as f32, v.y as f32, v.z as f32);
-        let way = round_up((exit - entry) * (1.0 + f64::EPSILON) + MAX_ENTRY_ERROR);
+        let way = round_up(exit - entry + MAX_ENTRY_ERROR);
         Walk::Tree { box_ray: BoxRay::new(narrow(from), narrow(unit), 0.0, way), entry }
     }
 }
@@ -169,5 +163,5 @@ impl Frame {
 /// The way from the point of entry to a hit at `range` from the origin, rounded up by more than its errors. Nothing is
 /// farther away than [`MAX_WAY`].
 pub(super) fn way_to(range: f64, entry: f64) -> f32 {
-    round_up(((range - entry) * (1.0 + f64::EPSILON) + MAX_ENTRY_ERROR).min(MAX_WAY))
+    round_up((range - entry + MAX_ENTRY_ERROR).min(MAX_WAY))
 }

@@ -2,7 +2,7 @@
 //!
 //! Vertices are `f64` numbers, and a mesh may be a micrometre or a million kilometres wide. So everything is traced in a
 //! *scaled* frame: coordinates times a power of two, which is exact, so that the mesh's box is about 1 wide on either
-//! side; and directions times a power of two, so that their largest component is from 1 to 2. Only the `f32` boxes are
+//! side; and directions times a power of two, so that their largest component is from 1/2 to 1. Only the `f32` boxes are
 //! also moved to the middle of the mesh.
 //!
 //! ```text

@@ -120,3 +120,128 @@ fn boxes_in_one_place_are_shown_with_all_their_faces() {
     assert!(faces.into_iter().eq(0..6000));
     assert!(walk_ray(&[], &ray).is_empty());
 }
+
+/// Boxes half a metre high, one above the other, from z = 0 on.
+fn tower(count: u32) -> Vec<Aabb> {
+    let at = |k: u32| Vec3A::new(0.0, 0.0, k as f32);
+    (0..count).map(|k| Aabb::new(at(k), at(k) + Vec3A::new(1.0, 1.0, 0.5))).collect()
+}
+
+/// Which way a walk goes: for many rays, for one, and a step at a time.
+#[derive(Debug, Clone, Copy)]
+enum By {
+    Bundle,
+    Ray,
+    Steps,
+}
+
+/// The leaves that a ray is shown that ends at `limit` once it has met one, each by its faces.
+fn leaves_up_to(boxes: &[Aabb], ray: &Ray, limit: f32, by: By) -> Vec<Vec<u32>> {
+    struct Limited(Vec<std::ops::Range<usize>>, f32);
+    impl Visitor for Limited {
+        fn leaf(&mut self, entries: std::ops::Range<usize>, far: &mut f32) -> Next {
+            self.0.push(entries);
+            *far = self.1;
+            Next::On
+        }
+    }
+    let mut limited = Limited(vec![], limit);
+    let mut faces = faces_of(boxes, |tree, stack, shown| {
+        match by {
+            By::Bundle => {
+                let inverse = ray.inv_direction.to_array().map(|inverse| Some([inverse; 2]));
+                let mut bundle = Bundle { origin: ray.origin.to_array(), inverse, far: ray.tmax };
+                tree.walk(stack, &mut bundle, &mut limited);
+            }
+            By::Ray => tree.walk_ray(stack, ray, &mut limited),
+            By::Steps => {
+                let mut steps = Steps::default();
+                steps.begin(tree, ray);
+                loop {
+                    match steps.at() {
+                        At::End => break,
+                        At::Node => steps.enter(tree),
+                        At::Leaf(entries) => {
+                            limited.leaf(entries, &mut 0.0);
+                            steps.end_at(limit);
+                            steps.go_on();
+                        }
+                    }
+                }
+            }
+        }
+        shown.0 = limited.0.iter().cloned().flatten().collect();
+    })
+    .into_iter();
+    limited.0.iter().map(|entries| faces.by_ref().take(entries.len()).collect()).collect()
+}
+
+#[test]
+fn a_walk_goes_from_the_nearest_leaf_to_the_farthest_that_still_counts() {
+    let boxes = tower(100);
+    let at = Vec3A::new(0.5, 0.5, 0.0);
+    // Up from 2 m below the lowest, and down from 2 m above the highest.
+    let up = Ray::new(at - 2.0 * Vec3A::Z, Vec3A::Z, 0.0, 500.0);
+    let down = Ray::new(at + 101.5 * Vec3A::Z, Vec3A::NEG_Z, 0.0, 500.0);
+    for (ray, by) in
+        [up, down].into_iter().flat_map(|ray| [By::Bundle, By::Ray, By::Steps].map(|by| (ray, by)))
+    {
+        let near = |leaf: &Vec<u32>| {
+            let begin =
+                |&face: &u32| if ray.direction.z > 0.0 { face as f32 + 2.0 } else { 101.0 - face as f32 };
+            leaf.iter().map(begin).fold(f32::MAX, f32::min)
+        };
+        let all = leaves_up_to(&boxes, &ray, 500.0, by);
+        assert!(all.is_sorted_by(|one, next| near(one) < near(next)), "{by:?}: {all:?}");
+        assert_eq!(all.iter().map(Vec::len).sum::<usize>(), 100);
+        // A leaf that begins at the end itself counts: a face in it may be as near, and have the lower index.
+        for last in [0, 1, 7, 8, 9, all.len() - 1] {
+            let limit = near(&all[last]);
+            assert_eq!(leaves_up_to(&boxes, &ray, limit, by), all[..=last], "{by:?} up to {limit}");
+            // The first is shown before anything ends the ray.
+            let before = leaves_up_to(&boxes, &ray, limit.next_down(), by);
+            assert_eq!(before, all[..last.max(1)], "{by:?} up to less than {limit}");
+        }
+    }
+}
+
+#[test]
+fn the_three_walks_of_a_ray_show_the_same_faces_in_the_same_order() {
+    let boxes = grid(4096);
+    for k in 0..300_u32 {
+        let part = |step: u32| ((k + 1) * step % 1021) as f32 / 1021.0;
+        let origin = Vec3A::new(64.0 * part(577), 64.0 * part(331), 40.0 * part(197) - 15.0);
+        let direction = Vec3A::new(part(409) - 0.5, part(719) - 0.5, part(887) - 0.5);
+        let ray = Ray::new(origin, direction.normalize(), 0.0, 100.0);
+        let [bundle, one, steps] =
+            [By::Bundle, By::Ray, By::Steps].map(|by| leaves_up_to(&boxes, &ray, 60.0, by));
+        assert!(one == bundle && one == steps, "{ray:?}: {one:?}, {bundle:?}, {steps:?}");
+    }
+}
+
+#[test]
+fn an_axis_along_which_a_ray_stays_limits_no_bundle() {
+    let of = |least: f32, greatest: f32| {
+        Bundle::new(Vec3A::ZERO, Vec3A::new(least, 0.5, 0.5), Vec3A::new(greatest, 1.0, 1.0), 9.0).inverse[0]
+    };
+    assert_eq!((of(0.25, 0.5), of(-0.5, -0.25)), (Some([2.0, 4.0]), Some([-4.0, -2.0])));
+    assert_eq!([of(0.0, 0.5), of(-0.5, 0.0), of(-0.5, 0.5), of(0.0, 0.0)], [None; 4]);
+}
+
+/// Eight boxes a node, as long as there are so many: fewer nodes are fewer steps of a walk.
+#[test]
+fn a_node_takes_up_to_eight_boxes_and_a_stack_those_of_each_depth() {
+    let tree_of = |boxes: &[Aabb]| {
+        let forest = Forest::build(boxes.len(), |face| Some(boxes[face as usize]));
+        WideTree::collapse(&forest, &forest.faces().1)
+    };
+    // The node above the one group, and the group's own; of boxes without a size too.
+    let points: Vec<Aabb> = (0..8).map(|k| Aabb::new(Vec3A::X * k as f32, Vec3A::X * k as f32)).collect();
+    for boxes in [tower(1), tower(2), tower(8), points] {
+        let tree = tree_of(&boxes);
+        assert_eq!((tree.node_count(), tree.stack_size), (2, 17), "{boxes:?}");
+    }
+    // Nine: eight, one of them a node of two.
+    assert_eq!((tree_of(&tower(9)).node_count(), tree_of(&tower(9)).stack_size), (3, 25));
+    assert_eq!((tree_of(&[]).node_count(), tree_of(&[]).stack_size), (0, 0));
+}
