@@ -26,3 +26,22 @@ pub(crate) fn identity(metadata: &Metadata) -> u64 {
     #[cfg(not(unix))]
     return u64::from(metadata.is_dir());
 }
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_files_are_told_apart_whatever_they_hold() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        for name in ["one", "other"] {
+            std::fs::write(path(name), "the same").unwrap();
+        }
+        let of = |name: &str| identity(&std::fs::metadata(path(name)).unwrap());
+        let one = of("one");
+        assert_ne!(one, of("other"));
+        std::fs::rename(path("one"), path("moved")).unwrap();
+        assert_eq!(one, of("moved"));
+    }
+}

@@ -104,3 +104,45 @@ pub(crate) fn common_size<T: Copy>(planes: &[&Image<T>]) -> Result<(u32, u32), F
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is found of a shape that is refused.
+    fn refusal(result: Result<(), Fault>) -> Option<String> {
+        result.err().map(|fault| fault.to_string())
+    }
+
+    #[test]
+    fn a_compressed_size_is_that_of_all_components_and_may_equal_the_limit() {
+        let shape = Shape { rows: 3, columns: 5, components: 4 };
+        // 3 x 5 cells of 4 doubles.
+        let check = |bytes: u64| refusal(shape.check_decoded(0, &Limits { bytes, ..Limits::default() }));
+        assert_eq!(check(480), None);
+        let expected = "size: 5 x 3 cells of 4 components in 0 bytes; expected at most 479 bytes as doubles";
+        assert_eq!(check(479).as_deref(), Some(expected));
+        // 2^26 doubles, and as many as a file of 2^24 bytes may have.
+        let large = Limits { bytes: u64::MAX, cells: u64::MAX, size: None };
+        let of = |rows: u64, file_bytes: u64| {
+            refusal(Shape { rows, columns: 1 << 16, components: 2 }.check_decoded(file_bytes, &large))
+        };
+        assert_eq!((of(512, 0), of(513, 0).is_some()), (None, true));
+        assert_eq!((of(1024, 1 << 24), of(1025, 1 << 24).is_some()), (None, true));
+    }
+
+    #[test]
+    fn sides_cells_and_components_may_equal_their_limits() {
+        let limits = Limits { cells: 15, ..Limits::default() };
+        let check = |rows: u64, columns: u64, components: u64| {
+            Shape { rows, columns, components }.check_size(&limits).is_ok()
+        };
+        assert!(check(3, 5, 1) && check(15, 1, MAX_COMPONENTS) && check(1, 15, 1));
+        assert!(!check(4, 4, 1) && !check(0, 5, 1) && !check(5, 0, 1));
+        assert!(!check(1, 1, 0) && !check(1, 1, MAX_COMPONENTS + 1));
+        let most = Limits { cells: u64::MAX, ..limits };
+        let side = u64::from(u32::MAX);
+        let of = |rows: u64, columns: u64| Shape { rows, columns, components: 1 }.check_size(&most).is_ok();
+        assert!(of(side, side) && !of(side + 1, 1) && !of(1, side + 1));
+    }
+}

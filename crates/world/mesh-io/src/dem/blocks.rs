@@ -356,3 +356,15 @@ fn limits() -> Limits {
     limits.intermediate_buffer_size = MAX_BLOCK_BYTES as usize;
     limits
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_decoder_may_take_as_much_as_a_block_may_have() {
+        // 512 MiB, as the page says; what a block claims is held against it before.
+        let Limits { decoding_buffer_size, intermediate_buffer_size, .. } = limits();
+        assert_eq!([decoding_buffer_size, intermediate_buffer_size], [512 << 20; 2]);
+    }
+}

@@ -140,3 +140,30 @@ fn small_files_of_many_zeros_are_refused_and_maps_of_a_usual_size_are_read() {
     // 40 MB of samples, and blocks on their way.
     assert!(peak < 60_000_000, "{peak}");
 }
+
+#[test]
+fn a_channel_that_is_there_twice_is_refused_by_its_name() {
+    let mut bytes = zeros([4, 16], FLOAT, 2);
+    let name = b"c0000001\0";
+    let at = bytes.windows(name.len()).position(|window| window == name).unwrap();
+    bytes[at + 7] = b'0';
+    let error = read(&bytes).0.unwrap_err().to_string();
+    assert_eq!(error, "map.exr: channel \"c0000000\": there twice; expected each channel once");
+}
+
+/// A claim that equals its limits passes: only what comes after the header is missing here.
+#[test]
+fn a_claim_may_equal_its_limit() {
+    let too_short = "a size that the file can hold (is it cut off?)";
+    // 2^26 cells, which are 2^29 bytes as doubles; and a line more.
+    assert_refused(&header([8192, 8192], HALF, 1, 0), too_short);
+    assert_refused(&header([8192, 8193], HALF, 1, 0), "expected 1 to 67108864 cells");
+    assert_refused(&header([4096, 8192], HALF, 2, 0), too_short);
+    assert_refused(&header([4096, 8193], HALF, 2, 0), "as doubles, in a file");
+    // 64 cells of two bytes.
+    let limits = Limits { bytes: 128, cells: 64, size: None };
+    let of = |rows: i32| {
+        exr_from_bytes(&zeros([4, rows], HALF, 1), Path::new("map.exr"), &limits).map(|map| map.height).ok()
+    };
+    assert_eq!((of(16), of(32)), (Some(16), None));
+}

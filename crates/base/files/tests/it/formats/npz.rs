@@ -3,7 +3,7 @@
 use std::io::Write as _;
 use std::path::Path;
 
-use raypencil_files::{Limits, Storage, Values, npz_from_bytes};
+use raypencil_files::{ArrayData, Limits, NamedArray, Storage, Values, npz_from_bytes, write_npz};
 use zip::CompressionMethod;
 use zip::write::SimpleFileOptions;
 
@@ -115,4 +115,26 @@ fn an_array_that_is_there_twice_is_refused_wherever_the_second_one_stands() {
             format!("a.npz: array \"{}\": there twice; expected each array once", names[0])
         );
     }
+}
+
+#[test]
+fn an_archive_is_the_bytes_that_the_format_asks_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.npz");
+    let array = NamedArray {
+        name: "t".into(),
+        unit: "s",
+        meaning: "times",
+        shape: vec![("row", 1), ("column", 2)],
+        data: ArrayData::F64(vec![1.5, 2.5]),
+    };
+    write_npz(&path, std::slice::from_ref(&array)).unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    // The local header: no 64-bit form, which some programs do not read; stored, as long as the array, name of 5 letters.
+    let entry = array.npy();
+    let at = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
+    let half = |at: usize| u16::from_le_bytes([bytes[at], bytes[at + 1]]);
+    assert!(half(4) < 45, "version {}", half(4));
+    assert_eq!((half(8), at(18), at(22), half(26), half(28)), (0, entry.len(), entry.len(), 5, 0));
+    assert_eq!((&bytes[30..35], &bytes[35..35 + entry.len()]), (&b"t.npy"[..], entry.as_slice()));
 }

@@ -108,3 +108,11 @@ fn files_that_are_no_float_map_are_refused() {
         assert!(read(&whole[..end]).is_err(), "{end}");
     }
 }
+
+#[test]
+fn a_word_of_the_header_has_up_to_32_letters() {
+    let with = |word: &str| read(&file(&format!("Pf\n1 1\n{word}\n"), &[2.5], f32::to_le_bytes));
+    let (longest, longer) = (format!("-1.{}", "0".repeat(29)), format!("-1.{}", "0".repeat(30)));
+    assert_eq!(with(&longest).unwrap().planes, [reals(1, 1, &[2.5])]);
+    assert!(with(&longer).unwrap_err().starts_with("scale: "), "{:?}", with(&longer));
+}

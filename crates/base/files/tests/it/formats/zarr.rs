@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use raypencil_files::{ArrayData, Limits, NamedArray, Values, ZarrArray, read_zarr, write_zarr};
+use raypencil_files::{
+    ArrayData, Limits, NamedArray, Values, ZarrArray, read_channels, read_zarr, write_zarr,
+};
 
 fn array(name: &str, shape: &[u64], data: ArrayData) -> NamedArray {
     let names = ["row", "column", "axis"];
@@ -124,4 +126,24 @@ fn what_is_not_read_is_refused_by_name() {
     assert!(refusal(&store).contains("no zarr.json; expected a store of version 3 that is complete"));
     fs::write(store.join(".zgroup"), "{}").unwrap();
     assert!(refusal(&store).contains("a store of version 2; expected a store of version 3"));
+}
+
+#[test]
+fn a_recording_may_be_a_store_or_have_one_in_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let keys = |path: &Path| -> Vec<String> {
+        read_channels(path, &Limits::default()).unwrap().by_key.into_keys().collect()
+    };
+    for name in ["maps.zarr", "no-ending"] {
+        let arrays = vec![array("range.T", &[1, 2], ArrayData::F64(vec![0.5, 1.5]))];
+        write_zarr(&folder.path().join(name), &[], &[("camera".to_string(), arrays)]).unwrap();
+        let [key] = keys(&folder.path().join(name)).try_into().unwrap();
+        assert!(key.starts_with("camera/range"), "{key}");
+        assert_eq!(keys(folder.path()), [key]);
+        fs::remove_dir_all(folder.path().join(name)).unwrap();
+    }
+    // By its name alone it says to be one.
+    fs::create_dir(folder.path().join("empty.ZARR")).unwrap();
+    let error = read_channels(folder.path(), &Limits::default()).map(|_| ()).unwrap_err().to_string();
+    assert!(error.contains("no zarr.json; expected a store of version 3"), "{error}");
 }

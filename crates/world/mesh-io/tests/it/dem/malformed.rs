@@ -194,3 +194,23 @@ fn equal_offsets_take_neither_time_nor_memory() {
     // 32 bytes for each strip that is checked, in a list that grows by doubling.
     assert!(peak < 16 * bytes.len(), "{peak}");
 }
+
+#[test]
+fn as_many_strips_as_the_limit_are_read_and_no_more() {
+    // Strips of one row, of which each third has the same bytes: no two neighbours share any.
+    let of = |rows: usize| {
+        let tiff = Tiff { block: vec![1], ..Tiff::plain() };
+        let offsets = (0..rows).map(|row| 8 + 16 * (row % 3) as u16).collect();
+        tiff.tag(257, Long(vec![rows as u32])).tag(273, Short(offsets)).tag(279, Short(vec![16; rows]))
+    };
+    // The two rows in the north, at y = 4 and 2.
+    let north = Some([10.0, 1.5, 4.0, 3.0]);
+    let read = read(&of(1 << 22), north).unwrap();
+    assert_eq!(read.posts.heights, [100.5, 101.5, 102.5, 103.5, 0.5, 1.5, 2.5, 3.5]);
+    assert_names(
+        &refusal(&of((1 << 22) + 1), north),
+        &[
+            "StripOffsets: 4194305 values; expected 4194305, one for each strip, of which at most 4194304 are read",
+        ],
+    );
+}

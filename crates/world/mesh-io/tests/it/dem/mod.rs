@@ -1,5 +1,6 @@
 //! Elevation models: files made by hand and by an encoder are read back, malformed ones are refused by name.
 
+mod facts;
 mod malformed;
 mod placement;
 mod samples;

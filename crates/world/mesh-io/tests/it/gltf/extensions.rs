@@ -234,3 +234,34 @@ fn skins_and_shapes_without_weight_move_nothing() {
     assert!(both(json!([0.5]), json!([0])).is_ok());
     assert!(both(json!([0]), json!([0.5])).is_err());
 }
+
+#[test]
+fn weights_of_a_skin_may_be_normalised_whole_numbers() {
+    let file = |component: u32, is_normalized: bool, weights: &[u8]| {
+        with_bytes(&reals(&SQUARE), &[weights], |json| {
+            let weights = json!({"bufferView": 2, "componentType": component, "count": 4, "type": "VEC4",
+                "normalized": is_normalized});
+            json["accessors"].as_array_mut().unwrap().push(weights);
+            json["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] = json!(2);
+            json["nodes"][0]["skin"] = json!(0);
+        })
+    };
+    for (component, name, size) in [(5121, "U8", 1), (5123, "U16", 2)] {
+        let mut weights = vec![0; 16 * size];
+        assert_eq!(exact(file(component, true, &weights)).unwrap().len(), 4, "{name}");
+        exactly_refused(
+            file(component, false, &weights),
+            &format!(
+                "accessor 2: WEIGHTS of VEC4 of {name}; expected VEC4 of F32, or of normalized U8 or U16"
+            ),
+        );
+        // The least weight that there is.
+        weights[15 * size] = 1;
+        let error = exact(file(component, true, &weights)).unwrap_err();
+        assert!(error.contains("a skin that moves vertices"), "{error}");
+    }
+    exactly_refused(
+        file(5120, true, &[0; 16]),
+        "accessor 2: WEIGHTS of VEC4 of I8; expected VEC4 of F32, or of normalized U8 or U16",
+    );
+}
