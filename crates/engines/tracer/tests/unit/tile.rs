@@ -132,7 +132,48 @@ fn a_refused_face_is_met_by_no_ray_of_a_block_however_narrow_the_margin() {
     }
     // A face beside all of them is refused for all at once.
     let beside = Triangle::new([a, c, b].map(|[x, y, z]| [x - 2.0, y + 2.0, z]), FaceId(0));
-    assert!(tile.misses_front(&SeenFace::new(beside.corners(), &tile)));
+    let seen = SeenFace::new(beside.corners(), &tile);
+    assert!(tile.misses_front(&seen) && tile.misses(&seen));
+    assert!(
+        (0..BLOCKS).all(|block| tile.block_misses_front(block, &seen) && tile.block_misses(block, &seen))
+    );
+}
+
+#[test]
+fn a_way_is_twice_its_longest_axis_and_one_more_backwards() {
+    let mut tile = Tile::EMPTY;
+    let ways = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
+    for (lane, way) in ways.into_iter().enumerate() {
+        tile.set_direction(lane, way + DVec3::new(0.25, -0.25, 0.25));
+    }
+    tile.prepare();
+    assert_eq!(tile.blocks[0].way[..6], [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
+    // Those that go one way are let take part together.
+    tile.set_direction(7, DVec3::new(0.3, -0.9, 0.2));
+    tile.prepare();
+    assert_eq!(tile.begin(0b1011_1000), 0b1000_1000);
+}
+
+#[test]
+fn of_equal_parts_the_first_is_the_longest_for_a_tile_and_for_a_ray() {
+    for (direction, longest) in [
+        ([1.0, 1.0, 0.5], 0),
+        ([1.0, 0.5, 1.0], 0),
+        ([0.5, 1.0, 1.0], 1),
+        ([1.0, 1.0, 1.0], 0),
+        ([0.5, 1.0, 0.5], 1),
+        ([0.5, 0.5, 1.0], 2),
+    ] {
+        for signs in 0..8_u32 {
+            let sign = |k: usize| if signs >> k & 1 == 1 { -1.0 } else { 1.0 };
+            let q = DVec3::from_array([0, 1, 2].map(|k| sign(k) * direction[k]));
+            let mut tile = Tile::EMPTY;
+            tile.set_direction(0, q);
+            tile.prepare();
+            assert_eq!(tile.blocks[0].way[0], (2 * longest) as f64 + f64::from(signs >> longest & 1), "{q}");
+            assert_eq!(TracedRay::axes_of(q)[2], longest, "{q}");
+        }
+    }
 }
 
 #[test]
