@@ -245,3 +245,16 @@ fn a_node_takes_up_to_eight_boxes_and_a_stack_those_of_each_depth() {
     assert_eq!((tree_of(&tower(9)).node_count(), tree_of(&tower(9)).stack_size), (3, 25));
     assert_eq!((tree_of(&[]).node_count(), tree_of(&[]).stack_size), (0, 0));
 }
+
+#[test]
+fn a_ray_that_goes_nowhere_has_no_step_left_of_the_one_before() {
+    let boxes = tower(100);
+    let up = Ray::new(Vec3A::new(0.5, 0.5, -2.0), Vec3A::Z, 0.0, 500.0);
+    faces_of(&boxes, |tree, _, _| {
+        let mut steps = Steps::default();
+        steps.begin(tree, &up);
+        assert!(matches!(steps.at(), At::Node));
+        steps.begin_nowhere();
+        assert!(matches!(steps.at(), At::End));
+    });
+}

@@ -1,6 +1,8 @@
 //! Point clouds of other programs: what is read, and what is refused with which words.
 
-use raypencil_mesh_io::{Cloud, CloudStorage, PackedField, PackedKind, PackedPoints, cloud_from_bytes};
+use raypencil_mesh_io::{
+    Cloud, CloudStorage, PackedField, PackedKind, PackedPoints, cloud_from_bytes, lzf_compressed,
+};
 
 fn read(bytes: &[u8]) -> Result<Cloud, String> {
     cloud_from_bytes(bytes, "c".as_ref(), |name| name != "unasked").map_err(|error| error.to_string())
@@ -263,4 +265,22 @@ fn rows_of_packed_points_may_have_bytes_behind_them() {
     assert_eq!((cloud.width, cloud.height), (2, 2));
     let of = |name: &str| cloud.column(name).unwrap().values.clone();
     assert_eq!((of("x"), of("z")), (vec![0.0, 1.0, 2.0, 3.0], vec![20.0, 21.0, 22.0, 23.0]));
+}
+
+#[test]
+fn the_shortest_text_of_a_cloud_is_read() {
+    let header = "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA ascii\n";
+    // A digit for each number, and nothing behind the last.
+    let cloud = read(format!("{header}1 2 3\n4 5 6").as_bytes()).unwrap();
+    assert_eq!(cloud.column("z").unwrap().values, [3.0, 6.0]);
+    let error = read(format!("{header}1 2 3\n4 5").as_bytes()).unwrap_err();
+    assert!(error.contains("data: 9 bytes; expected 3 numbers for each of 2 points"), "{error}");
+}
+
+#[test]
+fn a_copy_reaches_8192_bytes_back_and_no_further() {
+    let apart = |bytes: usize| lzf_compressed(&[&[1, 2, 3][..], &vec![0; bytes - 3], &[1, 2, 3]].concat());
+    // Three bytes from 8191 + 1 back; or as they are.
+    assert!(apart(8192).ends_with(&[1 << 5 | 31, 255]), "{:?}", apart(8192));
+    assert!(apart(8193).ends_with(&[2, 1, 2, 3]), "{:?}", apart(8193));
 }
