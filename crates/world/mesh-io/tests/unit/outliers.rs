@@ -288,3 +288,17 @@ fn mixtures_reach_three_posts_from_their_constant() {
         assert_eq!(down(row, constant), is_near, "{row} {constant}");
     }
 }
+
+#[test]
+fn the_half_beside_a_constant_has_a_cell_or_is_no_ground() {
+    // A row of -60 with mixtures of it and the ground, and rows of ground, half a metre or a metre from post to post.
+    let of = |rows: usize| {
+        let mut heights = vec![-60.0; 30];
+        heights[10..13].copy_from_slice(&[-50.0, -40.0, -20.0]);
+        heights.extend((0..30 * rows).map(|at| at as f64 / rows as f64));
+        Posts { heights: &heights, columns: 30, spacing: DVec2::ONE, metre: 1.0 }.constant()
+    };
+    assert_eq!(of(2).map(|found| (found.height, found.count, found.is_below)), Some((-60.0, 27, true)));
+    // One row of either: as well a wall as a constant.
+    assert_eq!(of(1), None);
+}

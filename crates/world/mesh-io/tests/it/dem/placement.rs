@@ -205,3 +205,14 @@ fn the_nearer_of_the_posts_have_to_be_apart() {
         }
     }
 }
+
+#[test]
+fn the_first_post_may_be_a_million_kilometres_away() {
+    // The post is in the middle of a pixel of 0.5 m, and the others are nearer.
+    let at = |x: f64| Tiff::plain().tag(33922, Double(vec![0.0, 0.0, 0.0, x - 0.25, 5.0, 0.0]));
+    assert_eq!(read(&at(-1e9), None).unwrap().posts.corner.x, -1e9);
+    assert_names(
+        &refusal(&at(-1e9 - 0.5), None),
+        &["ModelPixelScaleTag: pixel (0, 0) at (-1000000000.5, 4)", "coordinates within 1e9 m"],
+    );
+}

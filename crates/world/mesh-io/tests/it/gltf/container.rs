@@ -131,3 +131,12 @@ fn deep_json_ends_in_an_error_or_is_skipped() {
     });
     assert!(error.unwrap_err().contains("JSON: recursion limit exceeded"));
 }
+
+#[test]
+fn the_json_has_as_many_objects_as_may_be() {
+    // Braces inside texts count as well.
+    let others = square().0.to_string().matches('{').count();
+    let of = |count: usize| changed(|json| json["asset"]["generator"] = json!("{".repeat(count - others)));
+    assert!(of(1 << 19).is_ok());
+    refused(of((1 << 19) + 1), "JSON: 524289 objects; expected at most 524288");
+}

@@ -335,4 +335,28 @@ fn a_file_without_faces_says_what_it_holds() {
         holds("edges.ply", ply),
         format!("file: 1 vertex and no face; it has 1 of element `vertex`, 0 of element `edge`{expected}")
     );
+    // An element without a row needs no property.
+    let none = ply.replace("element edge 0\nproperty int a", "element face 0");
+    assert!(
+        holds("none.ply", &none).starts_with("file: 1 vertex and no face; "),
+        "{}",
+        holds("none.ply", &none)
+    );
+}
+
+#[test]
+fn rows_of_text_have_a_digit_and_a_blank_for_each_number() {
+    let ply = |rows: &str| {
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty int x\nproperty int y\nproperty int z\nelement face 1\n\
+                 property list int int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n{rows}"
+        )
+    };
+    assert_eq!(parse("a.ply", ply("3 0 1 2").as_bytes()).unwrap().faces(), [[0, 1, 2]]);
+    let short = ply("").replace("1 0 0\n0 1 0\n", "");
+    refused(
+        "a.ply",
+        short,
+        "element `vertex`: 3 rows of 6 bytes or more, with 7 bytes left; expected as many rows as the file has (is it cut off?)",
+    );
 }
