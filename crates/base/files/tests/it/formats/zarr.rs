@@ -147,3 +147,14 @@ fn a_recording_may_be_a_store_or_have_one_in_it() {
     let error = read_channels(folder.path(), &Limits::default()).map(|_| ()).unwrap_err().to_string();
     assert!(error.contains("no zarr.json; expected a store of version 3"), "{error}");
 }
+
+#[test]
+fn attributes_of_a_store_may_have_any_letters() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = folder.path().join("maps.zarr");
+    let value = "a \"quote\", C:\\path,\ttab, line\nend, \u{1}, µm";
+    write_zarr(&store, &[("a \"name\"", value)], &[]).unwrap();
+    let document: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(store.join("zarr.json")).unwrap()).unwrap();
+    assert_eq!(document["attributes"]["a \"name\""], value);
+}
