@@ -183,6 +183,9 @@ enum Mantissa {
     Long(IBig),
 }
 
+/// What compilers copy without calling a function.
+const _: () = assert!(size_of::<Dyadic>() <= 128);
+
 impl Mantissa {
     fn long(&self) -> IBig {
         match self {

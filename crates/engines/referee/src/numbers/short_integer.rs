@@ -4,8 +4,9 @@ use std::cmp::Ordering;
 
 use dashu_int::{IBig, Sign, UBig};
 
-/// Numbers of 64 bits in one integer. Vertices and rays of `f64` numbers of one size have margins of 14.
-const LIMBS: usize = 16;
+/// Numbers of 64 bits in one integer. Vertices and rays of `f64` numbers of one size have margins of 14. A dyadic number of such a
+/// mantissa takes 128 bytes, the most that compilers copy without calling a function.
+const LIMBS: usize = 14;
 
 /// An integer by its sign and its absolute value.
 #[derive(Debug, Clone, Copy)]
@@ -13,7 +14,7 @@ pub(crate) struct ShortInteger {
     /// The lowest first; 0 from `length` on.
     limbs: [u64; LIMBS],
     /// How many of them there are: the last one is not 0.
-    length: usize,
+    length: u8,
     /// Never of 0.
     is_negative: bool,
 }
@@ -31,7 +32,12 @@ impl ShortInteger {
         while length > 0 && limbs[length - 1] == 0 {
             length -= 1;
         }
-        Self { limbs, length, is_negative: is_negative && length > 0 }
+        Self { limbs, length: length as u8, is_negative: is_negative && length > 0 }
+    }
+
+    #[inline]
+    fn length(&self) -> usize {
+        usize::from(self.length)
     }
 
     #[inline]
@@ -60,7 +66,7 @@ impl ShortInteger {
             to.copy_from_slice(&limb.to_le_bytes());
         }
         let sign = if self.is_negative { Sign::Negative } else { Sign::Positive };
-        (sign, UBig::from_le_bytes(&bytes[..8 * self.length]))
+        (sign, UBig::from_le_bytes(&bytes[..8 * self.length()]))
     }
 
     pub(crate) fn to_long(self) -> IBig {
@@ -75,22 +81,22 @@ impl ShortInteger {
             return Some(*self);
         }
         let (by, rest) = (bits / 64, bits % 64);
-        if by >= LIMBS || self.length + by > LIMBS {
+        if by >= LIMBS || self.length() + by > LIMBS {
             return None;
         }
         let mut limbs = [0; LIMBS];
         let mut carry = 0;
-        for k in 0..self.length {
+        for k in 0..self.length() {
             let limb = self.limbs[k];
             limbs[k + by] = (limb << rest) | carry;
             carry = if rest == 0 { 0 } else { limb >> (64 - rest) };
         }
-        let mut length = self.length + by;
+        let mut length = self.length() + by;
         if carry != 0 {
             *limbs.get_mut(length)? = carry;
             length += 1;
         }
-        Some(Self { limbs, length, is_negative: self.is_negative })
+        Some(Self { limbs, length: length as u8, is_negative: self.is_negative })
     }
 
     /// The sum, or the difference; `None` if that is too long.
@@ -105,7 +111,7 @@ impl ShortInteger {
             });
         }
         let mut limbs = [0; LIMBS];
-        let mut length = self.length.max(other.length);
+        let mut length = self.length().max(other.length());
         let mut carry = false;
         for k in 0..length {
             let (sum, one) = self.limbs[k].overflowing_add(other.limbs[k]);
@@ -117,13 +123,13 @@ impl ShortInteger {
             *limbs.get_mut(length)? = 1;
             length += 1;
         }
-        Some(Self { limbs, length, is_negative: self.is_negative })
+        Some(Self { limbs, length: length as u8, is_negative: self.is_negative })
     }
 
     /// The product; `None` if that may be too long.
     #[inline]
     pub(crate) fn times(&self, other: &Self) -> Option<Self> {
-        let length = self.length + other.length;
+        let length = self.length() + other.length();
         if self.is_zero() || other.is_zero() {
             return Some(Self::ZERO);
         }
@@ -131,23 +137,23 @@ impl ShortInteger {
             return None;
         }
         let mut limbs = [0; LIMBS];
-        for k in 0..self.length {
+        for k in 0..self.length() {
             let (factor, mut carry) = (u128::from(self.limbs[k]), 0);
-            let to = &mut limbs[k..=k + other.length];
-            for (limb, &of_other) in to.iter_mut().zip(&other.limbs[..other.length]) {
+            let to = &mut limbs[k..=k + other.length()];
+            for (limb, &of_other) in to.iter_mut().zip(&other.limbs[..other.length()]) {
                 // At most (2^64 - 1)^2 + 2 (2^64 - 1) = 2^128 - 1.
                 let sum = factor * u128::from(of_other) + u128::from(*limb) + carry;
                 *limb = sum as u64;
                 carry = sum >> 64;
             }
-            to[other.length] = carry as u64;
+            to[other.length()] = carry as u64;
         }
         Some(Self::trimmed(limbs, length, self.is_negative != other.is_negative))
     }
 
     fn compare_magnitude(&self, other: &Self) -> Ordering {
         let by_limbs = || {
-            let pairs = self.limbs[..self.length].iter().zip(&other.limbs).rev();
+            let pairs = self.limbs[..self.length()].iter().zip(&other.limbs).rev();
             pairs.map(|(a, b)| a.cmp(b)).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
         };
         self.length.cmp(&other.length).then_with(by_limbs)
@@ -157,13 +163,13 @@ impl ShortInteger {
     fn less_magnitude(&self, other: &Self, is_negative: bool) -> Self {
         let mut limbs = [0; LIMBS];
         let mut borrow = false;
-        for k in 0..self.length {
+        for k in 0..self.length() {
             let (difference, one) = self.limbs[k].overflowing_sub(other.limbs[k]);
             let (difference, two) = difference.overflowing_sub(u64::from(borrow));
             limbs[k] = difference;
             borrow = one || two;
         }
-        Self::trimmed(limbs, self.length, is_negative)
+        Self::trimmed(limbs, self.length(), is_negative)
     }
 }
 

@@ -20,8 +20,8 @@ fn integer(longest: usize) -> impl Strategy<Value = ShortInteger> {
 
 /// The number, and that it is stored in the one way in which it may be.
 fn long(short: ShortInteger) -> IBig {
-    assert!(short.limbs[short.length..].iter().all(|&limb| limb == 0), "{short:?}");
-    assert!(short.length == 0 || short.limbs[short.length - 1] != 0, "{short:?}");
+    assert!(short.limbs[short.length()..].iter().all(|&limb| limb == 0), "{short:?}");
+    assert!(short.length == 0 || short.limbs[short.length() - 1] != 0, "{short:?}");
     assert!(short.length > 0 || !short.is_negative, "{short:?}");
     short.to_long()
 }
@@ -52,7 +52,7 @@ proptest! {
         match a.times(&b) {
             Some(product) => prop_assert_eq!(long(product), expected),
             // One limb more than it has may be asked for.
-            None => prop_assert!(a.length + b.length > LIMBS),
+            None => prop_assert!(a.length() + b.length() > LIMBS),
         }
     }
 
