@@ -13,7 +13,7 @@ packs=(pyramids facets hard)
 
 # expect CODE COMMAND...: the command must end with that exit code.
 expect() {
-    local wanted=$1 code=0
+    local wanted=$1 code=0 start=$SECONDS
     shift
     "$@" >"$work/output" 2>&1 || code=$?
     if [[ $code -ne $wanted ]]; then
@@ -21,7 +21,7 @@ expect() {
         printf 'FAILED: exit code %d, expected %d: %s\n' "$code" "$wanted" "$*" >&2
         exit 1
     fi
-    printf 'ok (exit code %d): %s\n' "$code" "$*"
+    printf 'ok (exit code %d, %d s): %s\n' "$code" $((SECONDS - start)) "$*"
 }
 
 # other_bit FILE: changes one bit, eight bytes before the end.
