@@ -6,6 +6,7 @@ mod bounds;
 mod cloud;
 mod cloud_trial;
 mod clouds_at_limits;
+mod clouds_in_text;
 mod clouds_of_many_returns;
 mod clouds_of_others;
 mod clouds_of_return_numbers;

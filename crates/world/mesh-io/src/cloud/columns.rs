@@ -11,9 +11,9 @@ pub enum CloudStorage {
     Double,
     /// Whole numbers.
     Whole,
-    /// Decimal numbers: for each the number of its decimals, less its exponent; and whether the file declares single precision.
+    /// Decimal numbers: for each the number of decimals to which it is good; and whether the file declares single precision.
     Decimal {
-        /// Digits after the point: 3 of 0.125, -2 of 1e2.
+        /// Digits after the point: 3 of 0.125, -2 of 1e2; more where the format of the file prints more, and leaves out zeros at the end.
         decimals: Vec<i32>,
         /// Whether the numbers were of single precision before they were printed.
         of_single: bool,
@@ -114,13 +114,4 @@ pub(crate) fn decimal(word: &str, of_single: bool) -> Option<f64> {
     let number: f64 = word.parse().ok()?;
     let is_held = if of_single { (number as f32).is_finite() } else { number.is_finite() };
     (is_held || !word.contains(|digit: char| digit.is_ascii_digit())).then_some(number)
-}
-
-/// Digits after the point of a decimal number as it is printed, less its exponent.
-pub(crate) fn decimals(word: &str) -> i32 {
-    let (digits, exponent) = word.split_once(['e', 'E']).unwrap_or((word, "0"));
-    let after = digits.split_once('.').map_or(0, |(_, after)| after.len());
-    // What parses as a number has an exponent that is one; 400 decimals are beyond every double.
-    let exponent = exponent.parse::<i32>().unwrap_or(0).clamp(-400, 400);
-    i32::try_from(after).unwrap_or(400).min(400) - exponent
 }

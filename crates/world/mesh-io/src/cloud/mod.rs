@@ -6,10 +6,12 @@ mod columns;
 mod lzf;
 mod packed;
 mod pcd;
+mod printed;
 mod read;
 
+pub(crate) use columns::decimal;
 pub use columns::{Cloud, CloudColumn, CloudStorage};
-pub(crate) use columns::{decimal, decimals};
 pub use lzf::compressed as lzf_compressed;
 pub use packed::{PackedField, PackedKind, PackedPoints};
+pub(crate) use printed::{Printed, with_decimals};
 pub use read::{claimed_points, cloud_from_bytes, is_cloud_file, read_cloud};

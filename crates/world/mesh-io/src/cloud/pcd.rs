@@ -2,9 +2,10 @@
 
 use raypencil_files::Fault;
 
-use super::columns::{Cloud, CloudColumn, CloudStorage, check_names, decimal, decimals};
+use super::columns::{Cloud, CloudColumn, CloudStorage, check_names, decimal};
 use super::lzf;
 use super::packed::{PackedField, PackedKind, PackedPoints, check_fields};
+use super::printed::{Printed, with_decimals};
 
 /// Maximum number of fields.
 const MAX_FIELDS: usize = 1024;
@@ -263,7 +264,7 @@ fn of_text(
             format!("{width} numbers for each of {} points", header.points),
         ));
     }
-    let mut columns: Vec<(CloudColumn, Vec<i32>)> = Vec::new();
+    let mut columns: Vec<(CloudColumn, Vec<Printed>)> = Vec::new();
     for field in header.fields.iter().filter(|field| keeps(field)) {
         let values = Vec::with_capacity(header.points as usize);
         columns
@@ -293,7 +294,7 @@ fn of_text(
                     return Err(Fault::new(place(), format!("{:?}", words[at]), expected));
                 };
                 column.values.push(number);
-                of_text.push(decimals(words[at]));
+                of_text.push(Printed::of(words[at]));
             }
             at += field.count;
         }
@@ -306,12 +307,5 @@ fn of_text(
             format!("{}, one for each point", header.points),
         ));
     }
-    let named = |(mut column, decimals): (CloudColumn, Vec<i32>)| {
-        column.storage = match column.storage {
-            CloudStorage::Whole => CloudStorage::Whole,
-            storage => CloudStorage::Decimal { decimals, of_single: storage == CloudStorage::Single },
-        };
-        column
-    };
-    Ok(columns.into_iter().map(named).collect())
+    Ok(with_decimals(columns))
 }

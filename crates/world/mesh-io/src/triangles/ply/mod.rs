@@ -7,7 +7,7 @@ mod numbers;
 
 use raypencil_files::Fault;
 
-use crate::cloud::{CloudColumn, CloudStorage};
+use crate::cloud::{CloudColumn, CloudStorage, Printed, with_decimals};
 use crate::triangles::parts::{Parts, coordinate};
 use header::{Element, Format, Header, Number, Property};
 use numbers::{Binary, Numbers, Text};
@@ -95,7 +95,7 @@ fn columns(
         let name = String::from_utf8_lossy(property.name).into_owned();
         (property.length.is_none() && keeps(&name)).then_some(name)
     };
-    let mut columns: Vec<Option<(CloudColumn, Vec<i32>)>> = Vec::new();
+    let mut columns: Vec<Option<(CloudColumn, Vec<Printed>)>> = Vec::new();
     for property in &vertices.properties {
         let storage = match property.number {
             Number::Real(4) => CloudStorage::Single,
@@ -113,23 +113,16 @@ fn columns(
     for _ in 0..vertices.count {
         numbers.begin_row()?;
         for (property, column) in vertices.properties.iter().zip(&mut columns) {
-            let Some((column, decimals)) = column else {
+            let Some((column, printed)) = column else {
                 skip(property, &mut numbers)?;
                 continue;
             };
             column.values.push(numbers.real(property.number)?);
-            decimals.extend(numbers.decimals());
+            printed.extend(numbers.printed());
         }
         numbers.end_row()?;
     }
-    let named = |(mut column, decimals): (CloudColumn, Vec<i32>)| {
-        if column.storage != CloudStorage::Whole && !decimals.is_empty() {
-            let of_single = column.storage == CloudStorage::Single;
-            column.storage = CloudStorage::Decimal { decimals, of_single };
-        }
-        column
-    };
-    Ok(columns.into_iter().flatten().map(named).collect())
+    Ok(with_decimals(columns.into_iter().flatten().collect()))
 }
 
 /// Refuses rows that cannot be in the file, before memory is asked for.

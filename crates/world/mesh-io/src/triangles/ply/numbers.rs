@@ -2,7 +2,7 @@
 
 use raypencil_files::Fault;
 
-use crate::cloud::{decimal, decimals};
+use crate::cloud::{Printed, decimal};
 use crate::triangles::ply::header::{Element, Number};
 use crate::triangles::text::{self, Lines, quoted, words};
 
@@ -21,8 +21,8 @@ pub(super) trait Numbers {
     /// A number as the nearest double.
     fn real(&mut self, number: Number) -> Result<f64, Fault>;
 
-    /// Digits after the point of the last number, less its exponent; `None` in a binary file.
-    fn decimals(&self) -> Option<i32> {
+    /// The last number as it is printed; `None` in a binary file.
+    fn printed(&self) -> Option<Printed> {
         None
     }
 
@@ -198,8 +198,8 @@ impl Numbers for Text<'_> {
         real.ok_or_else(|| Fault::new(self.place(), quoted(word), "a decimal number that its type holds"))
     }
 
-    fn decimals(&self) -> Option<i32> {
-        Some(decimals(std::str::from_utf8(self.last).unwrap_or_default()))
+    fn printed(&self) -> Option<Printed> {
+        Some(Printed::of(std::str::from_utf8(self.last).unwrap_or_default()))
     }
 
     fn whole(&mut self, _: Number) -> Result<i64, Fault> {
