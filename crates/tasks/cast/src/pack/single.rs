@@ -20,6 +20,7 @@ const LEAST_ERROR: f64 = 1.0 / (1_u64 << 28) as f64;
 
 /// A wrong number.
 struct Off {
+    value: CastValue,
     stated: f64,
     exact: f64,
     /// Whether its type holds single precision or less, whatever was computed.
@@ -28,23 +29,34 @@ struct Off {
 
 impl Trial {
     /// Whether most wrong numbers of the first rays, so many, are of single precision, or are off by as much as its rounding and to
-    /// both sides. Of too few numbers that is not asked.
+    /// both sides. Lengths have to be off to both sides by themselves: what moves or turns a sensor makes them all longer, or all
+    /// shorter, where points go to either side of it. Of too few numbers that is not asked.
     pub(super) fn looks_single(&self, exact: &ExactCast<'_>, wrong: usize) -> bool {
         let numbers: Vec<Off> =
             (0..wrong.min(self.rays.len()).min(MAX_LOOKED)).flat_map(|ray| self.off(exact, ray)).collect();
         if numbers.len() < MIN_NUMBERS {
             return true;
         }
-        let most = |count: usize| count * 10 >= numbers.len() * 9;
+        let most = |count: usize, of: usize| count * 10 >= of * 9;
         let is_single = |off: &&Off| !off.is_stored_so && off.stated == f64::from(off.stated as f32);
-        if most(numbers.iter().filter(is_single).count()) {
+        if most(numbers.iter().filter(is_single).count(), numbers.len()) {
             return true;
         }
-        let above = numbers.iter().filter(|off| off.stated > off.exact).count();
+        // Away from 0, or towards it.
+        let are_one_sided = |is_asked: &dyn Fn(&Off) -> bool| {
+            let asked = || numbers.iter().filter(|off| is_asked(off));
+            let (all, away) =
+                (asked().count(), asked().filter(|off| off.stated.abs() > off.exact.abs()).count());
+            all >= MIN_NUMBERS && (most(away, all) || most(all - away, all))
+        };
+        let is_one_sided = are_one_sided(&|_| true)
+            || [CastValue::T, CastValue::Range]
+                .into_iter()
+                .any(|length| are_one_sided(&|off| off.value == length));
         let mut sizes: Vec<f64> =
             numbers.iter().map(|off| ((off.stated - off.exact) / off.exact).abs()).collect();
         sizes.sort_by(f64::total_cmp);
-        !most(above) && !most(numbers.len() - above) && sizes[sizes.len() / 2] >= LEAST_ERROR
+        !is_one_sided && sizes[sizes.len() / 2] >= LEAST_ERROR
     }
 
     /// The numbers of a ray that are off.
@@ -58,7 +70,7 @@ impl Trial {
             let stated = self.stated.part(value, index).filter(|_| value != CastValue::Side)?;
             let is_stored_so = self.stated.stored.of(value, index) > 0.0;
             let pairs = stated.into_iter().zip(value.exact(&hit));
-            Some(pairs.map(move |(stated, exact)| Off { stated, exact, is_stored_so }))
+            Some(pairs.map(move |(stated, exact)| Off { value, stated, exact, is_stored_so }))
         };
         let all = CastValue::ALL.into_iter().filter_map(of_value).flatten();
         all.filter(|off| (off.stated - off.exact).abs() > RIGHT * off.exact.abs()).collect()

@@ -385,6 +385,23 @@ fn single_precision_and_orders_are_told_with_another_mistake() {
     reversed(Folders::right().change("t", |_, t| t + 0.125)).expect_why(&[rows, "t is 0.125 too large"]);
 }
 
+/// A sensor that stands a little elsewhere, or turns a little further, changes lengths to one side and coordinates to both.
+#[test]
+fn small_errors_of_one_sign_are_not_told_as_single_precision() {
+    let share = |ray: usize| 2.5e-7 * (1.0 + (ray % 5) as f64 / 10.0);
+    let longer = |index: usize, length: f64| length * (1.0 + share(index));
+    let lengths = || Folders::right().change("t", longer).change("range", longer);
+    let moved = lengths().change("point", |index, part| part * (1.0 + share(index / 3)));
+    let turned = lengths()
+        .change("point", |index, part| part * (1.0 + share(index / 3) * [1.0, -1.0, 1.0][index % 3]));
+    for folders in [moved, turned] {
+        let checked = folders.check();
+        assert!(!checked.passes());
+        let why = checked.why.unwrap_or_default();
+        assert!(!why.contains("single precision"), "{why}");
+    }
+}
+
 #[test]
 fn errors_without_a_rule_are_not_explained() {
     let checked = Folders::right().change("t", |index, t| t + 1e-3 * (index % 7) as f64).check();
