@@ -19,6 +19,10 @@ pub(crate) const MAX_CAMERA_INFO_BYTES: u64 = 1 << 20;
 /// Most numbers that a calibration lists in one place: the fourteen coefficients of the longest model of distortion.
 const MAX_NUMBERS: usize = 64;
 
+/// Models of distortion that are a pinhole where their coefficients are zero; an empty name stands for none. Zeros of others, such
+/// as `equidistant`, are a fisheye: r = f theta. (ROS `sensor_msgs/distortion_models`)
+const PINHOLES: [&str; 3] = ["", "plumb_bob", "rational_polynomial"];
+
 /// Numbers of a camera without distortion, as ROS has them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CameraInfo {
@@ -39,9 +43,11 @@ struct InfoKeys {
     #[serde(alias = "k", alias = "K")]
     camera_matrix: Spanned<Numbers>,
     #[serde(default)]
-    distortion_model: String,
+    distortion_model: Option<Spanned<String>>,
     #[serde(default, alias = "d", alias = "D")]
     distortion_coefficients: Option<Spanned<Numbers>>,
+    #[serde(default, alias = "r", alias = "R")]
+    rectification_matrix: Option<Spanned<Numbers>>,
     #[serde(default, alias = "p", alias = "P")]
     projection_matrix: Option<Spanned<Numbers>>,
     #[serde(default)]
@@ -66,7 +72,12 @@ struct RegionKeys {
 }
 
 /// A list of numbers: alone, as messages have it, or as `data` of a matrix, as files have it.
-struct Numbers(Vec<f64>);
+#[derive(Clone, PartialEq)]
+struct Numbers {
+    data: Vec<f64>,
+    /// `rows` and `cols` beside the data.
+    stated: [Option<i64>; 2],
+}
 
 impl<'de> Deserialize<'de> for Numbers {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -88,20 +99,23 @@ impl<'de> Deserialize<'de> for Numbers {
                     }
                     numbers.push(number);
                 }
-                Ok(Numbers(numbers))
+                Ok(Numbers { data: numbers, stated: [None; 2] })
             }
 
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Numbers, A::Error> {
-                let mut numbers = None;
+                let (mut numbers, mut stated) = (None, [None; 2]);
                 while let Some(key) = map.next_key::<String>()? {
                     match key.as_str() {
-                        "data" => numbers = Some(map.next_value::<Numbers>()?),
+                        "data" => numbers = Some(map.next_value::<Numbers>()?.data),
+                        "rows" => stated[0] = Some(map.next_value()?),
+                        "cols" => stated[1] = Some(map.next_value()?),
                         _ => {
                             map.next_value::<IgnoredAny>()?;
                         }
                     }
                 }
-                numbers.ok_or_else(|| A::Error::missing_field("data"))
+                let data = numbers.ok_or_else(|| A::Error::missing_field("data"))?;
+                Ok(Numbers { data, stated })
             }
         }
         deserializer.deserialize_any(ListOrMatrix)
@@ -113,7 +127,7 @@ impl<'de> Deserialize<'de> for Numbers {
 ///
 /// # Errors
 /// Names the file, the line and what was expected: a file that is none, a camera that is not calibrated, one with skew or
-/// distortion, and one that sends a part of its image or merges its pixels.
+/// distortion or a model that is no pinhole at zeros, and one that sends a part of its image or merges its pixels.
 ///
 /// ```
 /// use raypencil_scene_io::camera_info_from_text;
@@ -155,15 +169,15 @@ pub fn camera_info_from_text(
 impl InfoKeys {
     /// All that it says, wherever that stands.
     fn without_places(&self) -> impl PartialEq {
-        let numbers = |keys: &Option<Spanned<Numbers>>| keys.as_ref().map(|keys| keys.value.0.clone());
+        let numbers = |keys: &Option<Spanned<Numbers>>| keys.as_ref().map(|keys| keys.value.clone());
         let count = |key: &Option<Spanned<i64>>| key.as_ref().map(|key| key.value);
         let roi = self.roi.as_ref().map(|roi| [roi.x_offset, roi.y_offset, roi.width, roi.height]);
         (
             [self.image_width.value, self.image_height.value],
-            self.camera_matrix.value.0.clone(),
-            self.distortion_model.clone(),
+            self.camera_matrix.value.clone(),
+            self.distortion_model.as_ref().map(|model| model.value.clone()),
             numbers(&self.distortion_coefficients),
-            numbers(&self.projection_matrix),
+            [numbers(&self.rectification_matrix), numbers(&self.projection_matrix)],
             [count(&self.binning_x), count(&self.binning_y)],
             roi,
         )
@@ -186,6 +200,7 @@ impl InfoKeys {
                 return Err(source.error(span(source, &self.camera_matrix.referenced), message));
             }
         }
+        self.check_shapes(source)?;
         let (numbers, name, place) = match (is_rectified, &self.projection_matrix) {
             (false, _) => (
                 matrix(source, &self.camera_matrix, "camera matrix K", [3, 3])?,
@@ -195,7 +210,7 @@ impl InfoKeys {
             (true, Some(projection)) => {
                 let rows = matrix(source, projection, "projection P", [3, 4])?;
                 // Tx and Ty move a second camera beside the first; here the camera's position says where it is.
-                let last = projection.value.0[11];
+                let last = projection.value.data[11];
                 if last != 0.0 {
                     let message = format!("the last number of the projection P is {last}; expected 0");
                     return Err(source.error(span(source, &projection.referenced), message));
@@ -219,19 +234,72 @@ impl InfoKeys {
                 "the {name} is {numbers:?}; expected [fx, 0, cx], [0, fy, cy], [0, 0, 1]: a camera without skew"
             )));
         }
-        if let Some(coefficients) = self.distortion_coefficients.as_ref().filter(|_| !is_rectified) {
-            let values = &coefficients.value.0;
-            // Negative zero is zero; NaN is not.
-            if values.iter().any(|&value| value != 0.0) {
-                let message = format!(
-                    "the images are distorted, {} {values:?}; expected zeros, for distortion is not modelled, or \
-                     `camera_info_rectified = true` for the camera's rectified images",
-                    self.distortion_model
-                );
-                return Err(source.error(span(source, &coefficients.referenced), message));
-            }
+        if !is_rectified {
+            self.check_pinhole(source)?;
         }
         Ok(CameraInfo { size, focal_length: [fx, fy], principal_point: [cx, cy] })
+    }
+
+    /// The camera's own images have no distortion: a model whose zeros are a pinhole, and zeros.
+    fn check_pinhole(&self, source: &Source) -> Result<(), SceneIoError> {
+        let model = self.distortion_model.as_ref();
+        if let Some(model) = model.filter(|model| !PINHOLES.contains(&model.value.as_str())) {
+            let message = format!(
+                "the model of distortion is {:?}; expected plumb_bob or rational_polynomial, which are a pinhole where their \
+                 coefficients are zero, or `camera_info_rectified = true` for the camera's rectified images",
+                model.value
+            );
+            return Err(source.error(span(source, &model.referenced), message));
+        }
+        let Some(coefficients) = &self.distortion_coefficients else { return Ok(()) };
+        let values = &coefficients.value.data;
+        // Negative zero is zero; NaN is not.
+        if values.iter().any(|&value| value != 0.0) {
+            let message = format!(
+                "the images are distorted, {} {values:?}; expected zeros, for distortion is not modelled, or \
+                 `camera_info_rectified = true` for the camera's rectified images",
+                model.map_or("", |model| &model.value)
+            );
+            return Err(source.error(span(source, &coefficients.referenced), message));
+        }
+        Ok(())
+    }
+
+    /// What `rows` and `cols` say of a list, where they stand beside it, is true of it.
+    fn check_shapes(&self, source: &Source) -> Result<(), SceneIoError> {
+        let matrices = [
+            (Some(&self.camera_matrix), "camera matrix K", [3, 3]),
+            (self.rectification_matrix.as_ref(), "rectification R", [3, 3]),
+            (self.projection_matrix.as_ref(), "projection P", [3, 4]),
+        ];
+        let refuse = |numbers: &Spanned<Numbers>, name: &str, expected: String| {
+            let Numbers { data, stated } = &numbers.value;
+            let [rows, cols] = stated.map(|length| length.map_or("?".into(), |length| length.to_string()));
+            let message =
+                format!("the {name} says {rows} x {cols} and has {} numbers; {expected}", data.len());
+            source.error(span(source, &numbers.referenced), message)
+        };
+        for (numbers, name, expected) in matrices {
+            let Some(numbers) = numbers else { continue };
+            let Numbers { data, stated } = &numbers.value;
+            let is_stated = *stated != [None; 2];
+            let is_as_expected =
+                stated.iter().zip(expected).all(|(one, length)| one.is_none_or(|one| one == length));
+            if is_stated && !(is_as_expected && data.len() as i64 == expected[0] * expected[1]) {
+                return Err(refuse(
+                    numbers,
+                    name,
+                    format!("expected {} rows of {}", expected[0], expected[1]),
+                ));
+            }
+        }
+        let Some(coefficients) = &self.distortion_coefficients else { return Ok(()) };
+        let Numbers { data, stated } = &coefficients.value;
+        let [Some(rows), Some(cols)] = *stated else { return Ok(()) };
+        if rows.checked_mul(cols) != Some(data.len() as i64) {
+            return Err(refuse(coefficients, "list of coefficients", "expected as many as it says".into()));
+        }
+        Ok(())
     }
 }
 
@@ -242,7 +310,7 @@ fn matrix(
     name: &str,
     [rows, columns]: [usize; 2],
 ) -> Result<[[f64; 3]; 3], SceneIoError> {
-    let values = &numbers.value.0;
+    let values = &numbers.value.data;
     if values.len() != rows * columns {
         let message = format!("the {name} has {} numbers; expected {rows} rows of {columns}", values.len());
         return Err(source.error(span(source, &numbers.referenced), message));

@@ -1,6 +1,7 @@
 //! Tests of the public functions: scenes from files and names, drives, resolved scenes, and files that are wrong.
 
 mod bad_scenes;
+mod camera_info;
 mod cameras;
 mod dem;
 mod drives;
