@@ -87,24 +87,36 @@ impl GeoKeys {
         }
         let doubles = tags.reals(file, DOUBLES)?.unwrap_or_default();
         let texts = tags.text(file, TEXTS)?.unwrap_or_default();
+        // A key that is there twice has two meanings: a program may take the first value or the last.
+        let mut seen: BTreeMap<Key, String> = BTreeMap::new();
         for entry in rest.chunks_exact(4).take(count) {
             let &[key, tag, length, at] = entry else { continue };
             let (key, length, first) = (Key(key), usize::from(length), usize::from(at));
-            match tag {
+            let value = match tag {
                 // The value is in this tag.
                 0 => {
                     keys.shorts.insert(key, at);
+                    at.to_string()
                 }
                 DOUBLES => {
-                    keys.doubles.extend(doubles.get(first).map(|&value| (key, value)));
+                    let value = doubles.get(first);
+                    keys.doubles.extend(value.map(|&value| (key, value)));
+                    value.map_or("no number".into(), f64::to_string)
                 }
                 // Texts are only shown and searched for words: one that is cut off is no fault. Each ends in a bar.
                 TEXTS => {
                     let text: String = texts.chars().skip(first).take(length).collect();
-                    keys.texts.insert(key, text.trim_end_matches('|').trim().to_string());
+                    let text = text.trim_end_matches('|').trim().to_string();
+                    let value = format!("{text:?}");
+                    keys.texts.insert(key, text);
+                    value
                 }
-                _ => {}
+                _ => format!("{length} numbers of {}", tag_name(tag)),
+            };
+            if let Some(earlier) = seen.get(&key) {
+                return Err(key.fault(format!("{earlier} and {value}"), "the key once"));
             }
+            seen.insert(key, value);
         }
         Ok(keys)
     }

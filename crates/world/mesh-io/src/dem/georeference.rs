@@ -81,7 +81,7 @@ fn placement(
         Registration::Point => 0.0,
     };
     let (place, placement) = match tags.reals(file, TRANSFORMATION)? {
-        Some(matrix) => (TRANSFORMATION, by_matrix(&matrix, half)?),
+        Some(matrix) => (TRANSFORMATION, agreeing(by_matrix(&matrix, half)?, tags, file, half)?),
         None => (PIXEL_SCALE, by_tie_point(tags, file, half)?),
     };
     let placement = placement.to_metres(unit);
@@ -111,6 +111,35 @@ fn by_matrix(matrix: &[f64], half: f64) -> Result<Placement, Fault> {
         return Err(unfit());
     }
     Ok(Placement { first: [d + a * half, h + f * half], column: a, row: f })
+}
+
+/// The placement by the matrix, if a pixel scale and a tie point beside it say the same: a program may take the one or
+/// the others. CHOICE: places to a thousandth of a pixel, and spacings to a millionth, because writers round.
+fn agreeing(
+    matrix: Placement,
+    tags: &Tags,
+    file: &mut (impl Read + Seek),
+    half: f64,
+) -> Result<Placement, Fault> {
+    if tags.reals(file, PIXEL_SCALE)?.is_none() || tags.reals(file, TIE_POINT)?.is_none() {
+        return Ok(matrix);
+    }
+    let tie = by_tie_point(tags, file, half)?;
+    let near = |a: f64, b: f64, step: f64, part: f64| (a - b).abs() <= part * step.abs();
+    let is_same = near(tie.first[0], matrix.first[0], tie.column, 1e-3)
+        && near(tie.first[1], matrix.first[1], tie.row, 1e-3)
+        && near(tie.column, matrix.column, tie.column, 1e-6)
+        && near(tie.row, matrix.row, tie.row, 1e-6);
+    if is_same {
+        return Ok(matrix);
+    }
+    let place =
+        format!("{}, {} and {}", tag_name(TRANSFORMATION), tag_name(PIXEL_SCALE), tag_name(TIE_POINT));
+    let words = |of: Placement| {
+        format!("({}, {}) and steps of {} and {}", of.first[0], of.first[1], of.column, of.row)
+    };
+    let found = format!("the middle of pixel (0, 0) at {}, and at {}", words(matrix), words(tie));
+    Err(Fault::new(place, found, "one place: take the matrix or the two others out"))
 }
 
 /// Placement by the pixel scale and one tie point.

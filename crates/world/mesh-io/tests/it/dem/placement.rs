@@ -77,6 +77,44 @@ fn matrices_that_scale_and_move() {
     }
 }
 
+/// A program may take either of the two.
+#[test]
+fn a_matrix_beside_a_tie_point_says_the_same_place() {
+    let beside = |a: f64, d: f64, f: f64, h: f64| {
+        let rows = vec![a, 0.0, 0.0, d, 0.0, f, 0.0, h, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+        Tiff::plain().tag(34264, Double(rows))
+    };
+    let plain = read(&Tiff::plain(), None).unwrap().posts;
+    assert_eq!(read(&beside(0.5, 10.0, -2.0, 5.0), None).unwrap().posts, plain);
+    // A writer that rounds: a ten-thousandth of a pixel.
+    assert!(read(&beside(0.5, 10.00005, -2.0, 4.9998), None).is_ok());
+    // One tag alone says no place.
+    assert!(read(&beside(0.5, 70.0, -2.0, 5.0).without(33550), None).is_ok());
+    assert!(read(&beside(0.5, 70.0, -2.0, 5.0).without(33922), None).is_ok());
+    for tiff in [
+        beside(0.5, 11.0, -2.0, 5.0),
+        beside(0.5, 10.002, -2.0, 5.0),
+        beside(0.5, 10.0, -2.0, 6.0),
+        beside(0.500_001, 10.0, -2.0, 5.0),
+        beside(0.5, 10.0, -2.00001, 5.0),
+        beside(0.5, 10.0, 2.0, 1.0),
+    ] {
+        let names = [
+            "tag 34264 ModelTransformationTag, tag 33550 ModelPixelScaleTag and tag 33922 ModelTiepointTag: ",
+        ];
+        assert_names(&refusal(&tiff, None), &names);
+    }
+    let message = refusal(&beside(1.0, 5.0, -2.0, 5.0), None);
+    let words = "the middle of pixel (0, 0) at (5.5, 4) and steps of 1 and -2, and at (10.25, 4) and steps of 0.5 and -2";
+    assert_names(&message, &[words, "expected one place: take the matrix or the two others out"]);
+    // What is refused of a tie point is refused beside a matrix, too.
+    let heights = beside(0.5, 10.0, -2.0, 5.0).tag(33922, Double(vec![0.0, 0.0, 0.0, 10.0, 5.0, 250.0]));
+    assert_names(
+        &refusal(&heights, None),
+        &["ModelTiepointTag: heights scaled by 0 and moved from 0 to 250"],
+    );
+}
+
 #[test]
 fn a_picture_without_a_place_is_refused() {
     let bare = Tiff::plain().without(33550).without(33922);
@@ -110,6 +148,36 @@ fn degrees_and_broken_keys_are_refused() {
     for broken in [vec![], vec![1, 1, 0], vec![1, 1, 0, 9], vec![2, 1, 0, 0]] {
         assert_names(&refusal(&Tiff::plain().tag(34735, Short(broken)), None), &["GeoKeyDirectoryTag: "]);
     }
+}
+
+/// Of two values a program may take the first or the last.
+#[test]
+fn a_key_that_is_there_twice_is_refused_with_both_values() {
+    for (pairs, words) in [
+        ([[1025, 2], [1025, 1]], "key 1025 GTRasterTypeGeoKey: 2 and 1; expected the key once"),
+        ([[1024, 2], [1024, 1]], "key 1024 GTModelTypeGeoKey: 2 and 1; expected the key once"),
+        ([[4099, 9002], [4099, 9001]], "key 4099 VerticalUnitsGeoKey: 9002 and 9001; expected the key once"),
+        (
+            [[3076, 9001], [3076, 9001]],
+            "key 3076 ProjLinearUnitsGeoKey: 9001 and 9001; expected the key once",
+        ),
+        ([[2060, 7], [2060, 8]], "key 2060 of another kind: 7 and 8; expected the key once"),
+    ] {
+        let message = refusal(&Tiff::plain().tag(34735, keys(&pairs)), None);
+        assert_names(&message, &["tag 34735 GeoKeyDirectoryTag, ", words]);
+    }
+    let mixed = |entries: &[u16]| {
+        let numbers = [&[1, 1, 0, entries.len() as u16 / 4], entries].concat();
+        let tiff = Tiff::plain().tag(34735, Short(numbers)).tag(34736, Double(vec![0.5, 2.0]));
+        refusal(&tiff.tag(34737, super::write::Values::Text("ab|cd|")), None)
+    };
+    let sizes = [3077, 34736, 1, 0, 3077, 34736, 1, 1];
+    assert_names(&mixed(&sizes), &["key 3077 ProjLinearUnitSizeGeoKey: 0.5 and 2; expected the key once"]);
+    let texts = [1026, 34737, 3, 0, 1026, 34737, 3, 3];
+    assert_names(&mixed(&texts), &["key 1026 GTCitationGeoKey: \"ab\" and \"cd\"; expected the key once"]);
+    // A number and a text are two values, too.
+    let of_two_kinds = [1026, 0, 1, 5, 1026, 34737, 3, 3];
+    assert_names(&mixed(&of_two_kinds), &["key 1026 GTCitationGeoKey: 5 and \"cd\"; expected the key once"]);
 }
 
 #[test]
