@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
+use serde_json::{Map, Value};
 
 use crate::bytes;
 use crate::error::{Fault, FileError};
@@ -17,6 +18,27 @@ const MAX_DOCUMENT_BYTES: u64 = 1 << 20;
 
 /// Name of the description of a group or an array.
 const DOCUMENT: &str = "zarr.json";
+
+/// The keys of a group's and of an array's description. (Zarr core specification 3.0, "Group metadata", "Array metadata";
+/// `consolidated_metadata` copies the descriptions below a group, which are read where they are)
+const GROUP_KEYS: [&str; 4] = ["zarr_format", "node_type", "attributes", "consolidated_metadata"];
+
+const ARRAY_KEYS: [&str; 11] = [
+    "zarr_format",
+    "node_type",
+    "shape",
+    "data_type",
+    "chunk_grid",
+    "chunk_key_encoding",
+    "fill_value",
+    "codecs",
+    "attributes",
+    "storage_transformers",
+    "dimension_names",
+];
+
+/// Names of the dimensions, in the order in which they are read. Other names say nothing of an order.
+const DIMENSIONS: [&str; 3] = ["row", "column", "axis"];
 
 /// An array of a store.
 #[derive(Debug, Clone)]
@@ -35,7 +57,9 @@ pub struct ZarrArray {
 /// columns, components). Arrays of another shape, such as coordinates, and deeper groups are left out.
 ///
 /// # Errors
-/// Names the folder, what was found and what was expected: another version, compressed chunks, a chunk that is not there.
+/// Names the folder, what was found and what was expected: another version, compressed chunks, a chunk that is not there, and
+/// whatever a description says that would change the numbers: an extension that must be understood, a storage transformer, a scale
+/// or an offset, dimensions in another order.
 /// `limits.bytes` holds for all arrays together.
 pub fn read_zarr(store: impl AsRef<Path>, limits: &Limits) -> Result<Vec<ZarrArray>, FileError> {
     let store = store.as_ref();
@@ -96,10 +120,16 @@ struct NodeDocument {
 #[derive(Deserialize)]
 struct ArrayDocument {
     shape: Vec<u64>,
-    data_type: serde_json::Value,
+    data_type: Value,
     chunk_grid: Named<ChunkGrid>,
     chunk_key_encoding: Named<Option<Separator>>,
     codecs: Vec<Named<Option<Endian>>>,
+    storage_transformers: Option<Vec<Value>>,
+    dimension_names: Option<Vec<Option<String>>>,
+    attributes: Option<Map<String, Value>>,
+    /// All other keys.
+    #[serde(flatten)]
+    others: Map<String, Value>,
 }
 
 #[derive(Deserialize)]
@@ -142,11 +172,55 @@ impl Node {
         };
         let NodeDocument { zarr_format, node_type } = serde_json::from_slice(&text).map_err(invalid)?;
         match (zarr_format, node_type.as_str()) {
-            (3, "group") => Ok(Self::Group),
+            (3, "group") => {
+                let keys = serde_json::from_slice(&text).map_err(invalid)?;
+                understood(&keys, &GROUP_KEYS).map_err(refuse)?;
+                Ok(Self::Group)
+            }
             (3, "array") => Ok(Self::Array(serde_json::from_slice(&text).map_err(invalid)?)),
             (3, other) => Err(refuse(Fault::new("node_type", format!("{other:?}"), "group or array"))),
             (other, _) => Err(refuse(Fault::new("zarr_format", other.to_string(), "3"))),
         }
+    }
+}
+
+/// Refuses keys that are not known, but for extensions that say that they need not be understood. (Zarr core specification 3.0,
+/// "Extension points")
+fn understood(keys: &Map<String, Value>, known: &[&str]) -> Result<(), Fault> {
+    let need_not = |value: &Value| value.get("must_understand") == Some(&Value::Bool(false));
+    match keys.iter().find(|(key, value)| !known.contains(&key.as_str()) && !need_not(value)) {
+        None => Ok(()),
+        Some((key, value)) => {
+            let expected = "no extension but those that say \"must_understand\": false";
+            Err(Fault::new(format!("{DOCUMENT}, key {key:?}"), value.to_string(), expected))
+        }
+    }
+}
+
+impl ArrayDocument {
+    /// That its numbers are those of its chunks, row by row.
+    fn check_meaning(&self) -> Result<(), Fault> {
+        understood(&self.others, &ARRAY_KEYS)?;
+        if let Some([first, ..]) = self.storage_transformers.as_deref() {
+            return Err(Fault::new("storage_transformers", first.to_string(), "none"));
+        }
+        // xarray, and whoever else reads by the CF conventions, multiplies and adds.
+        for (key, neutral) in [("scale_factor", 1.0), ("add_offset", 0.0)] {
+            let value = self.attributes.as_ref().and_then(|attributes| attributes.get(key));
+            if let Some(value) = value.filter(|value| value.as_f64() != Some(neutral)) {
+                let expected = format!("{neutral} or none: write the numbers as they are meant");
+                return Err(Fault::new(format!("attributes, {key}"), value.to_string(), expected));
+            }
+        }
+        let names = self.dimension_names.as_deref().unwrap_or_default();
+        for (place, name) in names.iter().enumerate() {
+            let own = DIMENSIONS.iter().position(|own| Some(*own) == name.as_deref());
+            if own.is_some_and(|own| own != place) {
+                let names: Vec<&str> = names.iter().map(|name| name.as_deref().unwrap_or("?")).collect();
+                return Err(Fault::new("dimension_names", names.join(", "), DIMENSIONS.join(", ")));
+            }
+        }
+        Ok(())
     }
 }
 
@@ -162,6 +236,7 @@ fn read_array(
         return Ok(None);
     }
     let refuse = |fault: Fault| FileError::recording(path, fault);
+    document.check_meaning().map_err(refuse)?;
     let numbers = Chunks::of(document).and_then(|chunks| chunks.npy(path, left)).map_err(refuse)?;
     left.bytes = left.bytes.saturating_sub(numbers.len() as u64);
     let array = raster_from_bytes(&numbers, &Limits::default()).map_err(refuse)?;

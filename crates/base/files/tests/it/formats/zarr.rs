@@ -128,6 +128,91 @@ fn what_is_not_read_is_refused_by_name() {
     assert!(refusal(&store).contains("a store of version 2; expected a store of version 3"));
 }
 
+/// What would change the numbers, or may: a reader that ignores it gives others than the writer meant.
+#[test]
+fn a_description_that_asks_not_to_be_read_so_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = folder.path().join("s.zarr");
+    let document = |more: &str| {
+        chunked(folder.path(), |document| document.replace("\"attributes\": {}", more));
+    };
+    let attributes = |more: &str| format!("\"attributes\": {{{more}}}");
+    for (more, words) in [
+        (
+            r#""foo": {"must_understand": true}"#.into(),
+            "depth: zarr.json, key \"foo\": {\"must_understand\":true}; expected no extension but those that say",
+        ),
+        // Whatever does not say that it need not be understood must be.
+        (r#""foo": {"name": "bar"}"#.into(), "key \"foo\": {\"name\":\"bar\"}; expected no extension but"),
+        (r#""foo": false"#.into(), "key \"foo\": false; expected no extension but"),
+        (
+            r#""foo": {"must_understand": "false"}"#.into(),
+            "key \"foo\": {\"must_understand\":\"false\"}; expected",
+        ),
+        (
+            r#""storage_transformers": [{"name": "x"}]"#.into(),
+            "depth: storage_transformers: {\"name\":\"x\"}; expected none",
+        ),
+        (
+            attributes(r#""scale_factor": 0.001"#),
+            "depth: attributes, scale_factor: 0.001; expected 1 or none",
+        ),
+        (attributes(r#""add_offset": 5"#), "depth: attributes, add_offset: 5; expected 0 or none"),
+        (attributes(r#""scale_factor": "1""#), "depth: attributes, scale_factor: \"1\"; expected 1 or none"),
+        (
+            r#""dimension_names": ["column", "row"]"#.into(),
+            "depth: dimension_names: column, row; expected row, column, axis",
+        ),
+        (
+            r#""dimension_names": [null, "row"]"#.into(),
+            "depth: dimension_names: ?, row; expected row, column",
+        ),
+        (
+            r#""dimension_names": ["axis", null]"#.into(),
+            "depth: dimension_names: axis, ?; expected row, column",
+        ),
+    ] {
+        let more: String = more;
+        document(&more);
+        let message = refusal(&store);
+        assert!(message.contains(words), "{message} has no {words}");
+    }
+    for more in [
+        r#""foo": {"must_understand": false, "name": "bar"}"#.into(),
+        r#""storage_transformers": []"#.into(),
+        r#""dimension_names": null, "storage_transformers": null"#.into(),
+        r#""dimension_names": ["y", "x"]"#.into(),
+        r#""dimension_names": ["row", null]"#.into(),
+        attributes(r#""scale_factor": 1, "add_offset": 0.0, "_FillValue": 7"#),
+    ] {
+        let more: String = more;
+        document(&more);
+        assert_eq!(read_zarr(&store, &Limits::default()).expect(&more).len(), 1);
+    }
+}
+
+/// A group may be extended as well. An array that is left out is not asked.
+#[test]
+fn groups_say_what_must_be_understood_and_arrays_of_other_shapes_do_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = folder.path().join("s.zarr");
+    let group = |more: &str| {
+        chunked(folder.path(), |document| document);
+        let text = format!(r#"{{"zarr_format": 3, "node_type": "group", "attributes": {{}}, {more}}}"#);
+        fs::write(store.join("zarr.json"), text).unwrap();
+    };
+    group(r#""foo": {"must_understand": true}"#);
+    assert!(
+        refusal(&store).contains("zarr.json, key \"foo\": {\"must_understand\":true}; expected no extension")
+    );
+    group(r#""consolidated_metadata": {"kind": "inline", "must_understand": false, "metadata": {}}"#);
+    assert_eq!(read_zarr(&store, &Limits::default()).unwrap().len(), 1);
+    chunked(folder.path(), |document| {
+        document.replace("[3, 5]", "[15]").replace("\"attributes\"", "\"foo\": 1, \"attributes\"")
+    });
+    assert!(read_zarr(&store, &Limits::default()).unwrap().is_empty());
+}
+
 #[test]
 fn a_recording_may_be_a_store_or_have_one_in_it() {
     let folder = tempfile::tempdir().unwrap();
