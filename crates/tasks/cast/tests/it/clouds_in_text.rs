@@ -6,6 +6,9 @@ use raypencil_cast::{CandidateConventions, CloudFrame};
 
 use super::cloud_trial::{Trial, head, points, still};
 
+/// How a program prints a number.
+type Print<'p> = &'p dyn Fn(f64) -> String;
+
 /// So many significant digits, as `%.8g` prints them.
 fn significant(digits: usize, number: f64) -> String {
     let rounded: f64 = format!("{number:.*e}", digits - 1).parse().expect("a number");
@@ -22,7 +25,7 @@ fn a_wrong_point_is_wrong_however_short_one_of_its_coordinates_is() {
         .filter(|place| [12.0, -7.0].contains(&place.x) || [9.0, -5.0].contains(&place.y))
         .count();
     assert!(hits > 1500 && on_walls > 500, "{on_walls} of {hits}");
-    let wrong = |print: &dyn Fn(f64) -> String, place: &dyn Fn(DVec3) -> DVec3| {
+    let wrong = |print: Print<'_>, place: &dyn Fn(DVec3) -> DVec3| {
         let mut text = format!(
             "VERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nWIDTH {count}\nHEIGHT 1\nPOINTS {count}\nDATA ascii\n",
             count = right.len()
@@ -37,7 +40,7 @@ fn a_wrong_point_is_wrong_however_short_one_of_its_coordinates_is() {
         checked.comparison.counts().wrong
     };
     let origin = trial.set.set.rays()[0].origin;
-    let formats: [(&str, f64, &dyn Fn(f64) -> String); 4] = [
+    let formats: [(&str, f64, Print<'_>); 4] = [
         ("shortest", 1e-10, &|number| number.to_string()),
         ("%.8g", 1e-6, &|number| significant(8, number)),
         ("%.4f", 1e-3, &|number| format!("{number:.4}")),
