@@ -145,6 +145,7 @@ impl Frame {
         }
         for k in 0..3 {
             // By a part of 0 the quotients are infinite: of opposite signs if the ray stays inside, and else of the same.
+            // On the border itself one of them is NaN, and the ray is let go: the faces' boxes end before it.
             let (a, b) =
                 ((-self.half_width[k] - start[k]) / unit[k], (self.half_width[k] - start[k]) / unit[k]);
             entry = entry.max(a.min(b));
