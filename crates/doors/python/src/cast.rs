@@ -4,8 +4,8 @@ use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use raypencil::cast::{
-    AllColumns, Answers, CastSeen, Caster, FirstColumns, GroupAtT, Questions, ReadingCounts, Values,
-    cast_beside_first, cast_warnings_of, traced_beside_first,
+    AllColumns, Answers, CastSeen, Caster, FirstColumns, GroupAtT, MeshHome, Questions, ReadingCounts,
+    Values, cast_beside_first, cast_warnings_of, traced_beside_first,
 };
 use raypencil::referee::Margin;
 use raypencil::{CastRay, Progress, Sides, Silent};
@@ -212,7 +212,14 @@ fn warnings(mesh: &MeshCore, rays: &[CastRay], asked: Asked, counts: ReadingCoun
     let knows_hits = asked.values != Values::default() || any || all;
     let rays = if knows_hits && rays.len() != 1 { rays } else { &[] };
     let seen = CastSeen { counts, open_edges: all.then(|| mesh.open_edges()) };
-    let found = cast_warnings_of(&mesh.triangles, || mesh.exact(), rays, asked.sides, None, seen);
+    let found = cast_warnings_of(
+        (&mesh.triangles, MeshHome::default()),
+        || mesh.exact(),
+        rays,
+        asked.sides,
+        None,
+        seen,
+    );
     found.iter().map(ToString::to_string).collect()
 }
 

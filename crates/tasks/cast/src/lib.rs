@@ -80,7 +80,7 @@ pub use raypencil_rosbag::CloudChoice;
 pub use returns::{BeamReturn, BeamReturns, Footprint};
 pub use scans::{ScansWritten, SetOfScans, write_scans};
 pub use text::{counts_text, ray_json, ray_text};
-pub use warnings::{CastSeen, cast_warnings, cast_warnings_of, open_edges};
+pub use warnings::{CastSeen, MeshHome, cast_warnings, cast_warnings_of, open_edges};
 pub use write::{CastSource, write_answers, write_set};
 
 #[cfg(doctest)]

@@ -19,10 +19,31 @@ const MAX_BACK_SHARE: f64 = 0.5;
 /// Rays that are asked once more, at most, where none hits: with other limits, and against both sides.
 const MAX_TRIED_RAYS: usize = 4096;
 
+/// Where a mesh comes from, as far as a warning says what to change there. By default it is a file whose coordinates stay.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct MeshHome {
+    /// Whether it is the terrain of a scene file, which has its scale and its up axis.
+    pub is_scene: bool,
+    /// Where the origin of the mesh's frame lies in its map, metres.
+    pub origin: [f64; 3],
+}
+
+impl MeshHome {
+    /// What takes millimetres to metres.
+    fn scale_remedy(self) -> &'static str {
+        if self.is_scene { "--set terrain.scale=0.001" } else { "--scale 0.001" }
+    }
+
+    /// What says that y is up.
+    fn up_remedy(self) -> &'static str {
+        if self.is_scene { "--set terrain.up=y" } else { "--up y" }
+    }
+}
+
 /// Warnings about the rays of a set, or of no set, whose answers are known.
 ///
 /// ```
-/// use raypencil_cast::{Questions, cast, cast_warnings, rays_from_bytes};
+/// use raypencil_cast::{MeshHome, Questions, cast, cast_warnings, rays_from_bytes};
 /// use raypencil_scene::{Sides, Silent, Triangles};
 ///
 /// // A floor in millimetres, 1.5 m below a ray that reaches 100 units.
@@ -30,14 +51,14 @@ const MAX_TRIED_RAYS: usize = 4096;
 /// let mesh = Triangles::new(corners, vec![[0, 1, 2]])?;
 /// let rays = rays_from_bytes(b"100,100,1500,0,0,-1,0,100", "here".as_ref())?.rays;
 /// let answers = cast(&mesh, &rays, Sides::Both, Questions::default(), &Silent);
-/// let found = cast_warnings(&mesh, &rays, Sides::Both, None, &answers);
+/// let found = cast_warnings((&mesh, MeshHome::default()), &rays, Sides::Both, None, &answers);
 /// let sentence = "the ray does not hit the mesh within its limits. Without them 1 of 1 that were tried would, the nearest at \
 ///                 1500 where the limit is 100: is the mesh in another unit, such as millimetres (--scale 0.001)?";
 /// assert_eq!(found[0].to_string(), sentence);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn cast_warnings(
-    mesh: &Triangles,
+    (mesh, home): (&Triangles, MeshHome),
     rays: &[CastRay],
     sides: Sides,
     set: Option<&NamedRaySet>,
@@ -48,7 +69,7 @@ pub fn cast_warnings(
     let too_near = answers.too_near() as u64;
     let counts = ReadingCounts { hits, too_near, backs, decided: answers.decided.unwrap_or_default() };
     let seen = CastSeen { counts, open_edges: answers.all.as_ref().map(|_| open_edges(mesh)) };
-    cast_warnings_of(mesh, || ExactCast::new(mesh), rays, sides, set, seen)
+    cast_warnings_of((mesh, home), || ExactCast::new(mesh), rays, sides, set, seen)
 }
 
 /// What warnings are about.
@@ -62,7 +83,7 @@ pub struct CastSeen {
 
 /// [`cast_warnings`] about rays whose answers are no longer there. Where anything is hit, they need not be there either.
 pub fn cast_warnings_of<'t>(
-    mesh: &'t Triangles,
+    (mesh, home): (&'t Triangles, MeshHome),
     exact: impl FnOnce() -> ExactCast<'t>,
     rays: &[CastRay],
     sides: Sides,
@@ -74,7 +95,8 @@ pub fn cast_warnings_of<'t>(
     let mut found = Vec::new();
     let ReadingCounts { hits, too_near, backs, .. } = seen.counts;
     if hits + too_near == 0 && !rays.is_empty() {
-        found.push(warning(WarningCode::NoHits, nothing_hit(mesh, &exact(), rays, sides)));
+        let (code, sentence) = Misses::new(mesh, home, &exact(), rays, sides).warning();
+        found.push(warning(code, sentence));
     }
     if backs as f64 > MAX_BACK_SHARE * hits as f64 {
         let percent = number(100.0 * backs as f64 / hits as f64);
@@ -86,15 +108,17 @@ pub fn cast_warnings_of<'t>(
     // The z axis of a pattern is up; rays as numbers may have any axes.
     if let Some(shape) = set.and_then(|_| TerrainShape::of_triangles(mesh)) {
         if lies_on_its_side(&shape) {
-            let sentence = "the mesh lies in the plane of x and z and faces along y, but the z axis of the pattern is up: is y up in \
-                            its file (--up y)?";
-            found.push(warning(WarningCode::TerrainOnItsSide, sentence.into()));
+            let sentence = format!(
+                "the mesh lies in the plane of x and z and faces along y, but the z axis of the pattern is up: is y up in its file \
+                 ({})?",
+                home.up_remedy()
+            );
+            found.push(warning(WarningCode::TerrainOnItsSide, sentence));
         }
         let reach = rays.iter().map(reach).fold(0.0, f64::max);
-        found.extend(
-            terrain_too_large(&shape, reach)
-                .map(|Warning { code, sentence, .. }| warning(code, format!("{sentence} (--scale 0.001)"))),
-        );
+        found.extend(terrain_too_large(&shape, reach).map(|Warning { code, sentence, .. }| {
+            warning(code, format!("{sentence} ({})", home.scale_remedy()))
+        }));
     }
     if let Some(open) = seen.open_edges.filter(|&open| open > 0) {
         let edges = counted(open, "open edge", "open edges");
@@ -111,76 +135,149 @@ fn reach(ray: &CastRay) -> f64 {
     ray.t_max * ray.direction.length()
 }
 
-/// Why no ray hits, as far as asking some of them again can tell. The answers are exact.
-fn nothing_hit(mesh: &Triangles, exact: &ExactCast<'_>, rays: &[CastRay], sides: Sides) -> String {
-    let none = match rays.len() {
-        1 => "the ray does not hit the mesh".to_string(),
-        rays => format!("none of the {} rays hits the mesh", count(rays as u64)),
-    };
-    let step = rays.len().div_ceil(MAX_TRIED_RAYS);
-    let tried: Vec<&CastRay> = rays.iter().step_by(step).collect();
-    let nearest = |limited: bool, sides: Sides| {
-        let mut hits = 0_u64;
-        let mut nearest: Option<(f64, &CastRay)> = None;
-        for &ray in &tried {
-            let asked = if limited {
-                *ray
-            } else {
-                CastRay { t_min: 0.0, t_max: f64::INFINITY, t_blind: 0.0, ..*ray }
-            };
-            let Some(hit) = exact.first(&asked, sides).first().and_then(|face| exact.values(&asked, *face))
-            else {
-                continue;
-            };
-            hits += 1;
-            if nearest.is_none_or(|(range, _)| hit.range.double < range) {
-                nearest = Some((hit.range.double, ray));
-            }
-        }
-        nearest.map(|(range, ray)| (hits, range, ray))
-    };
-    let of = tried.len();
-    if let Some((hits, range, ray)) = nearest(false, sides) {
-        let words = format!(
-            "{none} within its limits. Without them {hits} of {of} that were tried would, the nearest at"
-        );
-        let (range, from, to) =
-            (number(range), number(ray.t_min * ray.direction.length()), number(reach(ray)));
-        // What lies before the least t is no matter of a unit that is too small.
-        return match hit_is_beyond(ray, exact, sides) {
-            true => format!(
-                "{words} {range} where the limit is {to}: is the mesh in another unit, such as millimetres (--scale 0.001)?"
-            ),
-            false => format!("{words} {range}, before the {from} from which its hits count (t_min)."),
-        };
-    }
-    if sides == Sides::Fronts
-        && let Some((hits, ..)) = nearest(true, Sides::Both)
-    {
-        return format!(
-            "{none} at a front. {hits} of {of} that were tried meet the back of a face, through which they pass: are the faces \
-             wound clockwise, or do the rays begin inside?"
-        );
-    }
-    let Some([low, high]) = mesh.bounds() else { return format!("{none}: it has no vertices.") };
-    let origins = rays.iter().map(|ray| ray.origin);
-    let (first, last) = origins.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), origin| {
-        (low.min(origin), high.max(origin))
-    });
-    let place = |at: DVec3| format!("({}, {}, {})", number(at.x), number(at.y), number(at.z));
-    format!(
-        "{none}, however far they reach. It lies between {} and {}, and the rays begin between {} and {}: is its unit or its up axis \
-         another (--scale, --up)?",
-        place(low),
-        place(high),
-        place(first),
-        place(last)
-    )
+/// Rays of which none hits, and what some of them meet if they are asked otherwise.
+struct Misses<'a> {
+    mesh: &'a Triangles,
+    home: MeshHome,
+    exact: &'a ExactCast<'a>,
+    rays: &'a [CastRay],
+    tried: Vec<&'a CastRay>,
+    sides: Sides,
 }
 
-/// Whether the first hit of a ray without limits is beyond its greatest t. It hits something, and nothing within its limits.
-fn hit_is_beyond(ray: &CastRay, exact: &ExactCast<'_>, sides: Sides) -> bool {
-    exact.first(&CastRay { t_min: 0.0, t_blind: 0.0, ..*ray }, sides).is_empty()
+/// What rays hit that are asked otherwise.
+struct Tried<'a> {
+    hits: u64,
+    /// The nearest of these hits, in the unit of the mesh, and the ray of it as it was given.
+    nearest: f64,
+    ray: &'a CastRay,
+}
+
+impl<'a> Misses<'a> {
+    fn new(
+        mesh: &'a Triangles,
+        home: MeshHome,
+        exact: &'a ExactCast<'a>,
+        rays: &'a [CastRay],
+        sides: Sides,
+    ) -> Self {
+        let step = rays.len().div_ceil(MAX_TRIED_RAYS);
+        Self { mesh, home, exact, rays, tried: rays.iter().step_by(step).collect(), sides }
+    }
+
+    /// Why no ray hits, as far as asking some of them again can tell. The answers are exact.
+    fn warning(&self) -> (WarningCode, String) {
+        let none = match self.rays.len() {
+            1 => "the ray does not hit the mesh".to_string(),
+            rays => format!("none of the {} rays hits the mesh", count(rays as u64)),
+        };
+        if let Some(sentence) = self.of_map(&none) {
+            return (WarningCode::RaysInMap, sentence);
+        }
+        let sentence = self
+            .of_limits(&none)
+            .or_else(|| self.of_sides(&none))
+            .or_else(|| self.of_places(&none))
+            .unwrap_or_else(|| format!("{none}: it has no vertices."));
+        (WarningCode::NoHits, sentence)
+    }
+
+    /// Asks the rays that are tried, changed as `change` says.
+    fn ask(&self, sides: Sides, change: impl Fn(&CastRay) -> CastRay) -> Option<Tried<'a>> {
+        let mut found: Option<Tried<'a>> = None;
+        for &ray in &self.tried {
+            let asked = change(ray);
+            let hit =
+                self.exact.first(&asked, sides).first().and_then(|face| self.exact.values(&asked, *face));
+            let Some(range) = hit.map(|hit| hit.range.double) else { continue };
+            let tried = found.get_or_insert(Tried { hits: 0, nearest: range, ray });
+            tried.hits += 1;
+            if range < tried.nearest {
+                (tried.nearest, tried.ray) = (range, ray);
+            }
+        }
+        found
+    }
+
+    /// The rays as they would be if they were given in the map, and not in the frame of the mesh.
+    fn of_map(&self, none: &str) -> Option<String> {
+        let origin = DVec3::from_array(self.home.origin);
+        if origin == DVec3::ZERO {
+            return None;
+        }
+        let moved = |ray: &CastRay| CastRay { origin: ray.origin - origin, ..*ray };
+        let Tried { hits, .. } = self.ask(self.sides, moved)?;
+        Some(format!(
+            "{none}. {hits} of {} that were tried would if they began {} less: are they in coordinates of the map? Rays are in \
+             the frame of the scene, whose origin lies there in the map.",
+            self.tried.len(),
+            // With all its digits: it is what to subtract.
+            format_args!("({}, {}, {})", origin.x, origin.y, origin.z)
+        ))
+    }
+
+    /// The rays without their limits.
+    fn of_limits(&self, none: &str) -> Option<String> {
+        let without = |ray: &CastRay| CastRay { t_min: 0.0, t_max: f64::INFINITY, t_blind: 0.0, ..*ray };
+        let Tried { hits, nearest, ray } = self.ask(self.sides, without)?;
+        let words = format!(
+            "{none} within its limits. Without them {hits} of {} that were tried would, the nearest at {}",
+            self.tried.len(),
+            number(nearest)
+        );
+        // What lies before the least t is no matter of a unit that is too small.
+        Some(match self.hit_is_beyond(ray) {
+            true => format!(
+                "{words} where the limit is {}: is the mesh in another unit, such as millimetres ({})?",
+                number(reach(ray)),
+                self.home.scale_remedy()
+            ),
+            false => {
+                let from = number(ray.t_min * ray.direction.length());
+                format!("{words}, before the {from} from which its hits count (t_min).")
+            }
+        })
+    }
+
+    /// Whether the first hit of a ray without limits is beyond its greatest t. It hits something, and nothing within its limits.
+    fn hit_is_beyond(&self, ray: &CastRay) -> bool {
+        self.exact.first(&CastRay { t_min: 0.0, t_blind: 0.0, ..*ray }, self.sides).is_empty()
+    }
+
+    /// The rays on both sides of faces.
+    fn of_sides(&self, none: &str) -> Option<String> {
+        if self.sides == Sides::Both {
+            return None;
+        }
+        let Tried { hits, .. } = self.ask(Sides::Both, |ray| *ray)?;
+        Some(format!(
+            "{none} at a front. {hits} of {} that were tried meet the back of a face, through which they pass: are the faces \
+             wound clockwise, or do the rays begin inside?",
+            self.tried.len()
+        ))
+    }
+
+    /// Where the mesh lies, and where the rays begin.
+    fn of_places(&self, none: &str) -> Option<String> {
+        let [low, high] = self.mesh.bounds()?;
+        let origins = self.rays.iter().map(|ray| ray.origin);
+        let (first, last) = origins.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), origin| {
+            (low.min(origin), high.max(origin))
+        });
+        let remedy = if self.home.is_scene { "terrain.scale, terrain.up" } else { "--scale, --up" };
+        Some(format!(
+            "{none}, however far they reach. It lies between {} and {}, and the rays begin between {} and {}: is its unit or its \
+             up axis another ({remedy})?",
+            place(low),
+            place(high),
+            place(first),
+            place(last)
+        ))
+    }
+}
+
+fn place(at: DVec3) -> String {
+    format!("({}, {}, {})", number(at.x), number(at.y), number(at.z))
 }
 
 /// Number of edges that are not run through once in each direction, after vertices at the same place are taken as one.

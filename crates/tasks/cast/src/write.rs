@@ -17,7 +17,7 @@ use crate::cloud::{CloudFrame, CloudMap, write_pcd, write_ply};
 use crate::pcd_data::PcdData;
 use crate::range_picture::{range_picture, top_picture};
 use crate::returns::{BeamReturn, BeamReturns, echo_json};
-use crate::warnings::cast_warnings;
+use crate::warnings::{MeshHome, cast_warnings};
 
 /// Where mesh and rays come from, for the summary.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -36,9 +36,16 @@ pub struct CastSource {
     pub facts: FileFacts,
     /// Where the origin of the mesh's frame lies in the map of the mesh's file, metres: 0 where the coordinates are those of the file.
     pub origin: [f64; 3],
+    /// Whether the mesh is the terrain of a scene file.
+    pub is_scene: bool,
 }
 
 impl CastSource {
+    /// What warnings name of where the mesh comes from.
+    pub fn home(&self) -> MeshHome {
+        MeshHome { is_scene: self.is_scene, origin: self.origin }
+    }
+
     /// The map in which the mesh's frame lies, as clouds name it.
     pub fn map(&self) -> CloudMap {
         CloudMap { origin: self.origin, system: self.facts.dem().and_then(DemFacts::map_name) }
@@ -209,7 +216,7 @@ fn write_arrays(
         },
         "rays": { "file": source.rays, "sha256": source.rays_sha256, "shape": shape, "count": answers.first.len() },
         "sides": if sides == Sides::Both { "both" } else { "fronts" },
-        "warnings": cast_warnings(mesh, rays, sides, set, answers),
+        "warnings": cast_warnings((mesh, source.home()), rays, sides, set, answers),
         "counts": { "hits": hits, "tooNear": answers.too_near(), "misses": answers.misses(), "ties": ties },
     });
     Ok((arrays, document))

@@ -55,11 +55,13 @@ pub enum WarningCode {
     PostsStandOut,
     /// Crossings are asked for of a mesh that is not closed.
     OpenMesh,
+    /// Rays would hit if their coordinates of the map were moved into the frame of the scene.
+    RaysInMap,
 }
 
 impl WarningCode {
     /// All codes.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
         Self::NoHits,
         Self::FewHits,
         Self::BacksFirst,
@@ -80,6 +82,7 @@ impl WarningCode {
         Self::PolygonsNotPlanar,
         Self::PostsStandOut,
         Self::OpenMesh,
+        Self::RaysInMap,
     ];
 
     /// The code as files have it.
@@ -105,6 +108,7 @@ impl WarningCode {
             Self::PolygonsNotPlanar => "polygons_not_planar",
             Self::PostsStandOut => "posts_stand_out",
             Self::OpenMesh => "open_mesh",
+            Self::RaysInMap => "rays_in_map",
         }
     }
 }

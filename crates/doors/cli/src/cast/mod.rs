@@ -12,9 +12,9 @@ use raypencil::cast::{
     write_answers, write_cast_page, write_scan_bag, write_set,
 };
 use raypencil::io::{
-    FileError, FileFacts, FileFrame, FileUnits, Limits, LoadedRaySets, LoadedSweeps, OutputFolder,
-    PolygonFacts, RayScene, begin_output_folder, bytes, file_warnings, hex_digits, load_ray_scene,
-    read_ray_sets, read_sweeps, read_triangles, sha256,
+    FileError, FileFacts, FileFrame, FileUnits, Limits, LoadedRaySets, LoadedSweeps, OutputFolder, RayScene,
+    begin_output_folder, bytes, file_warnings, hex_digits, load_ray_scene, read_ray_sets, read_sweeps,
+    read_triangles, sha256,
 };
 use raypencil::survey::{Warning, WarningCode};
 use raypencil::{CastRay, HeadSweep, NamedRaySet, Progress, Sides, Triangles};
@@ -55,6 +55,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
         frame,
         facts,
         origin,
+        is_scene: is_toml(&command.mesh),
     };
     let mesh = &mesh;
     let of_scans: Vec<SetOfScans<'_>> = match &rays {
@@ -96,7 +97,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
             let sides = if command.fronts_only { Sides::Fronts } else { Sides::Both };
             let answers = answer(mesh, &array.rays, sides, questions, &spinner);
             let compared = Compared::of(command, mesh, &array.rays, sides, &spinner);
-            let mut warnings = cast_warnings(mesh, &array.rays, sides, None, &answers);
+            let mut warnings = cast_warnings((mesh, source.home()), &array.rays, sides, None, &answers);
             if !command.ray.is_empty() {
                 // A miss is the answer to a question.
                 warnings.retain(|warning| warning.code != WarningCode::NoHits);
@@ -133,7 +134,8 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
                 let sides = if command.fronts_only { Sides::Fronts } else { set.set.sides() };
                 let answers = answer(mesh, set.set.rays(), sides, questions, &spinner);
                 let compared = Compared::of(command, mesh, set.set.rays(), sides, &spinner);
-                let warnings = cast_warnings(mesh, set.set.rays(), sides, Some(set), &answers);
+                let warnings =
+                    cast_warnings((mesh, source.home()), set.set.rays(), sides, Some(set), &answers);
                 let returns = BeamReturns::of(&answers, set);
                 spinner.stage(&format!("{}: writing", set.name));
                 // One set is written as rays of no set are; of several each has a folder of its own.
@@ -196,7 +198,7 @@ pub(crate) fn cast(command: &Cast, json: bool) -> Result<Outcome, Trouble> {
     }
     warn(&of_file);
     results.iter().for_each(|result| warn(&result.warnings));
-    let mut text = format!("{}: {}\n", command.mesh.display(), mesh_text(mesh, &source.facts.polygons));
+    let mut text = format!("{}: {}\n", command.mesh.display(), mesh_text(mesh, &source));
     for result in &results {
         text += &result.text(printed);
     }
@@ -418,19 +420,23 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, FileError> {
     read.map_err(|error| FileError::io(path, "read", error))
 }
 
-fn mesh_text(mesh: &Triangles, polygons: &PolygonFacts) -> String {
+fn mesh_text(mesh: &Triangles, source: &CastSource) -> String {
     let of_zero_area = match mesh.zero_area_faces() {
         0 => String::new(),
         count => format!(", {count} of them without an area"),
     };
     let Some([low, high]) = mesh.bounds() else { return "no vertices".into() };
     let size = high - low;
-    let of_polygons = match polygons.words() {
+    let of_origin = match source.origin {
+        [0.0, 0.0, 0.0] => String::new(),
+        [x, y, z] => format!("; its origin at ({x}, {y}, {z}) of the map, and rays in its frame"),
+    };
+    let of_polygons = match source.facts.polygons.words() {
         words if words.is_empty() => words,
         words => format!("; {words}"),
     };
     format!(
-        "{} vertices, {} faces{of_zero_area}; {} x {} x {} wide{of_polygons}",
+        "{} vertices, {} faces{of_zero_area}; {} x {} x {} wide{of_origin}{of_polygons}",
         mesh.vertices().len(),
         mesh.faces().len(),
         size.x,

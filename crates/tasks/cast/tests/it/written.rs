@@ -4,9 +4,9 @@ use std::path::Path;
 
 use glam::DVec3;
 use raypencil_cast::{
-    Answers, CandidateConventions, CastSource, CastValue, Comparison, Questions, RayArray, RayVerdict,
-    Stated, StoredErrors, Wrong, cast, cast_warnings, check_ray_pack, compare, counts_text, open_edges,
-    rays_from_bytes, read_stated, write_answers, write_comparison, write_ray_pack,
+    Answers, CandidateConventions, CastSource, CastValue, Comparison, MeshHome, Questions, RayArray,
+    RayVerdict, Stated, StoredErrors, Wrong, cast, cast_warnings, check_ray_pack, compare, counts_text,
+    open_edges, rays_from_bytes, read_stated, write_answers, write_comparison, write_ray_pack,
 };
 use raypencil_files::{read_npy_numbers, write_npy_numbers};
 use raypencil_scene::{CastRay, FaceId, Precision, Reading, Side, Sides, Silent, Triangles};
@@ -239,7 +239,7 @@ fn half_of_the_hits_may_be_backs() {
         let rays: Vec<CastRay> =
             (0..fronts).map(|_| ray(3.0, -1.0)).chain((0..backs).map(|_| ray(-1.0, 1.0))).collect();
         let answers = cast(&square(), &rays, Sides::Both, Questions::default(), &Silent);
-        !cast_warnings(&square(), &rays, Sides::Both, None, &answers).is_empty()
+        !cast_warnings((&square(), MeshHome::default()), &rays, Sides::Both, None, &answers).is_empty()
     };
     assert!(!warned(4, 0) && !warned(4, 3) && !warned(4, 4));
     assert!(warned(4, 5) && warned(0, 4));

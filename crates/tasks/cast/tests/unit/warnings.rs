@@ -32,7 +32,7 @@ fn ray(origin: [f64; 3], direction: [f64; 3]) -> CastRay {
 
 fn found(mesh: &Triangles, rays: &[CastRay], sides: Sides, all: bool) -> Vec<(WarningCode, String)> {
     let answers = cast(mesh, rays, sides, Questions { all, ..Questions::default() }, &Silent);
-    let warnings = cast_warnings(mesh, rays, sides, None, &answers);
+    let warnings = cast_warnings((mesh, MeshHome::default()), rays, sides, None, &answers);
     warnings.into_iter().map(|warning| (warning.code, warning.sentence)).collect()
 }
 
@@ -138,7 +138,8 @@ fn a_pattern_is_told_of_another_axis_and_another_unit() {
         };
         let set = NamedRaySet::new("os1", pattern, Sides::Both).unwrap();
         let answers = cast(mesh, set.set.rays(), Sides::Both, Questions::default(), &Silent);
-        let warnings = cast_warnings(mesh, set.set.rays(), Sides::Both, Some(&set), &answers);
+        let home = MeshHome::default();
+        let warnings = cast_warnings((mesh, home), set.set.rays(), Sides::Both, Some(&set), &answers);
         assert!(warnings.iter().all(|warning| warning.sentence.starts_with("os1: ")), "{warnings:?}");
         warnings.into_iter().map(|warning| (warning.code, warning.sentence)).collect::<Vec<_>>()
     };
@@ -162,4 +163,38 @@ fn a_pattern_is_told_of_another_axis_and_another_unit() {
         WarningCode::TerrainTooLarge,
         &words,
     );
+}
+
+/// Warnings about rays on the terrain of a scene, whose origin is moved in its map.
+fn found_in_scene(mesh: &Triangles, rays: &[CastRay], sides: Sides) -> Vec<(WarningCode, String)> {
+    let home = MeshHome { is_scene: true, origin: [491_000.0, 5_540_123.0, 212.0] };
+    let answers = cast(mesh, rays, sides, Questions::default(), &Silent);
+    let warnings = cast_warnings((mesh, home), rays, sides, None, &answers);
+    warnings.into_iter().map(|warning| (warning.code, warning.sentence)).collect()
+}
+
+#[test]
+fn rays_in_coordinates_of_the_map_are_told_where_the_origin_lies() {
+    let floor = ground(30.0, [0, 1]);
+    let down = |at: [f64; 3]| ray(at, [0.0, 0.0, -1.0]);
+    let in_map = [down([491_005.0, 5_540_130.0, 214.0]), down([491_500.0, 5_540_130.0, 214.0])];
+    let words = [
+        "none of the 2 rays hits the mesh. 1 of 2 that were tried would if they began (491000, 5540123, 212) less",
+        "frame of the scene",
+    ];
+    assert_one(found_in_scene(&floor, &in_map, Sides::Both), WarningCode::RaysInMap, &words);
+    // Of a mesh file nothing is subtracted.
+    assert_one(found(&floor, &in_map, Sides::Both, false), WarningCode::NoHits, &["(--scale, --up)"]);
+    // With the same limits and sides: neither would hit.
+    let short = [CastRay { t_max: 1.0, ..in_map[0] }];
+    let [(code, sentence)] = found_in_scene(&floor, &short, Sides::Both).try_into().unwrap();
+    assert_eq!(code, WarningCode::NoHits, "{sentence}");
+    let from_below = [ray([491_005.0, 5_540_130.0, 200.0], [0.0, 0.0, 1.0])];
+    let [(code, sentence)] = found_in_scene(&floor, &from_below, Sides::Fronts).try_into().unwrap();
+    assert_eq!(code, WarningCode::NoHits, "{sentence}");
+    // What the remedy says of a scene are the keys of its file.
+    assert!(sentence.contains("(terrain.scale, terrain.up)"), "{sentence}");
+    let far = [CastRay { t_max: 1.0, ..down([5.0, 5.0, 1500.0]) }];
+    let words = ["--set terrain.scale=0.001"];
+    assert_one(found_in_scene(&floor, &far, Sides::Both), WarningCode::NoHits, &words);
 }

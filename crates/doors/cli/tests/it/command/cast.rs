@@ -571,6 +571,36 @@ fn clouds_of_ground_in_a_map_name_their_origin() {
 }
 
 #[test]
+fn rays_in_the_coordinates_of_a_map_are_told_where_the_scene_has_its_origin() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let at = folder.path();
+    fs::write(at.join("flat.tif"), super::terrain::import::geotiff(5, 4, &[7.0; 20])).expect("a file");
+    let scene = "version = 1\n[terrain]\ndem = \"flat.tif\"\n[vehicle]\nposition_m = [1000005, 496]\n[[rays]]\nname = \"down\"\n\
+                 spinning = { elevations_deg = [-90], steps = 2 }\nposition_m = [0, 0, 2]\n";
+    fs::write(at.join("scene.toml"), scene).expect("a file");
+    fs::write(at.join("rays.csv"), "1000005,496,9,0,0,-1\n").expect("a file");
+    let words = [
+        "warning: the ray does not hit the mesh. 1 of 1 that were tried would if they began (",
+        "frame of the scene",
+    ];
+    for (rays, code) in [(["--ray", "1000005,496,9,0,0,-1"].as_slice(), 0), (&["rays.csv"], 1)] {
+        let run = raypencil(at, &[&["cast", "scene.toml"], rays].concat());
+        assert_eq!(run.status.code(), Some(code), "{rays:?}");
+        let told = String::from_utf8_lossy(&run.stderr).into_owned();
+        assert!(words.iter().all(|word| told.contains(word)), "{told}");
+        // What it names is what makes the ray hit, and the first line of the screen has it as well.
+        let (_, origin) = told.split_once("began (").expect("an origin");
+        let origin = origin.split_once(')').expect("its end").0;
+        let first = String::from_utf8_lossy(&run.stdout).lines().next().expect("a line").to_string();
+        assert!(first.contains(&format!("its origin at ({origin}) of the map")), "{first}");
+        let parts: Vec<f64> = origin.split(", ").map(|part| part.parse().expect("a number")).collect();
+        let ray = format!("{},{},{},0,0,-1", 1_000_005.0 - parts[0], 496.0 - parts[1], 9.0 - parts[2]);
+        let shown = screen(at, &["cast", "scene.toml", &format!("--ray={ray}")], 0);
+        assert!(shown.contains("1 ray: 1 hit") && shown.contains("0 miss"), "{shown}");
+    }
+}
+
+#[test]
 fn returns_of_beams_are_counted_and_written() {
     let folder = TempDir::new().expect("a temporary folder");
     let at = folder.path();
