@@ -102,14 +102,26 @@ impl RayPackChecked {
             notes.push(format!("Not read, for no array has that name: {}.", self.unread.join(", ")));
         }
         let Some(cloud) = &self.cloud else { return notes };
-        let range = if cloud.has_range { ", and the field range" } else { "" };
+        let range = cloud.has_range.then_some("range");
+        let fields: Vec<&str> = cloud.keys.iter().map(String::as_str).chain(range).collect();
+        let fields = match fields[..] {
+            [] => String::new(),
+            [one] => format!(", and the field {one}"),
+            _ => format!(", and the fields {}", fields.join(", ")),
+        };
         notes.push(format!(
-            "{}{} in the frame of {}, laid on the rays {}. Judged: x, y, z, which rays have a point{range}.",
+            "{}{} in the frame of {}, laid on the rays {}. Judged: x, y, z, which rays have a point{fields}.",
             counted(cloud.points as u64, "point", "points"),
             cloud.source.as_ref().map_or(String::new(), |source| format!(" of {source}")),
             cloud.frame.words(),
             cloud.assigned
         ));
+        if !cloud.unjudged.is_empty() {
+            notes.push(format!(
+                "Not judged, as the pack knows nothing of them, or another field tells the same: {}.",
+                cloud.unjudged.join(", ")
+            ));
+        }
         if let Some(places) = cloud.returns_of_beam {
             let beams = counted(self.rays.rays.len().div_ceil(places) as u64, "beam", "beams");
             notes.push(format!(

@@ -111,6 +111,10 @@ pub(super) enum Fields {
     None,
     /// ring and time.
     Keys,
+    /// ring alone.
+    Ring,
+    /// time alone.
+    Time,
     /// range.
     Range,
 }
@@ -139,6 +143,8 @@ impl Trial {
         let (names, sizes, kinds) = match fields {
             Fields::None => ("", "", ""),
             Fields::Keys => (" ring time", " 2 4", " U F"),
+            Fields::Ring => (" ring", " 2", " U"),
+            Fields::Time => (" time", " 4", " F"),
             Fields::Range => (" range", " 4", " F"),
         };
         let mut bytes = format!(
@@ -155,6 +161,8 @@ impl Trial {
                     bytes.extend(point.ring.to_le_bytes());
                     bytes.extend((point.time as f32).to_le_bytes());
                 }
+                Fields::Ring => bytes.extend(point.ring.to_le_bytes()),
+                Fields::Time => bytes.extend((point.time as f32).to_le_bytes()),
                 Fields::Range => bytes.extend((point.range as f32).to_le_bytes()),
             }
         }

@@ -8,6 +8,7 @@ mod cloud_trial;
 mod clouds_at_limits;
 mod clouds_in_text;
 mod clouds_of_many_returns;
+mod clouds_of_one_key;
 mod clouds_of_others;
 mod clouds_of_return_numbers;
 mod clouds_of_returns;

@@ -59,6 +59,49 @@ impl Keys {
     pub(super) fn of(ring: Ring) -> Self {
         Self { ring, from: 0, exchanged: None, clock: Clock::RIGHT }
     }
+
+    /// The channel that a point's number names, of those of all numbers; `None`: it is the number of none.
+    pub(super) fn channel(&self, column: &CloudColumn, point: usize, channel_of: &[usize]) -> Option<usize> {
+        let key = column.values[point] - self.from as f64;
+        channel_of.get((key.fract() == 0.0 && key >= 0.0).then_some(key as usize)?).copied()
+    }
+}
+
+/// When the beams fire, by a clock.
+pub(super) struct Fired {
+    /// Times of the beams, seconds.
+    pub(super) times: Vec<f64>,
+    /// The same of each channel.
+    pub(super) channels: Vec<ChannelTimes>,
+}
+
+/// The times of a channel in ascending order, no two of them the same, each with its beam.
+pub(super) struct ChannelTimes {
+    list: Vec<(f64, usize)>,
+    /// The least time from one firing to the next; infinite for a channel that fires once.
+    gap: f64,
+}
+
+impl ChannelTimes {
+    /// `None` if two beams fire at one time.
+    fn new(mut list: Vec<(f64, usize)>) -> Option<Self> {
+        list.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let gap = list.windows(2).map(|pair| pair[1].0 - pair[0].0).fold(f64::INFINITY, f64::min);
+        (gap != 0.0).then_some(Self { list, gap })
+    }
+
+    /// How far off a time of the channel may be, seconds: a quarter of the way to the next firing.
+    pub(super) fn tolerance(&self) -> f64 {
+        self.gap / 4.0
+    }
+
+    /// The beam that fires at a time, within the tolerance.
+    fn beam_at(&self, time: f64) -> Option<usize> {
+        let after = self.list.partition_point(|(other, _)| *other < time);
+        let near = [after.checked_sub(1), Some(after)].into_iter().flatten().filter_map(|k| self.list.get(k));
+        let nearest = near.min_by(|a, b| (a.0 - time).abs().total_cmp(&(b.0 - time).abs()))?;
+        ((nearest.0 - time).abs() <= self.tolerance()).then_some(nearest.1)
+    }
 }
 
 /// The field that has the time.
@@ -109,37 +152,38 @@ pub(super) fn is_key(name: &str) -> bool {
 impl Asked<'_> {
     /// By channel and time, where the file has both and they tell rays apart.
     pub(super) fn by_keys(&self, cloud: &Cloud, is_point: &[bool], keys: Keys) -> Option<Assigned> {
-        let times = self.times()?;
-        // Without channels the time alone tells the ray.
-        let channels = self.channels().unwrap_or(1);
         let (of_channel, by) = self.channel_field(cloud)?;
         let channel_of = self.channel_of_number(by == BY_RING, keys);
-        let time = time_field(cloud, &times)?;
-        let asked_times = self.asked_times(&times, keys.clock);
-        // The times of each channel in ascending order, with their beams.
-        let mut fired: Vec<Vec<(f64, usize)>> = vec![Vec::new(); channels];
-        for (index, &time) in asked_times.iter().enumerate() {
-            fired[index % channels].push((time, index));
-        }
-        for list in &mut fired {
-            list.sort_by(|a, b| a.0.total_cmp(&b.0));
-            if list.windows(2).any(|pair| pair[0].0 == pair[1].0) {
-                return None;
-            }
-        }
+        let (_, seconds) = self.stated_times(cloud, keys.clock)?;
+        let fired = self.fired(keys.clock)?;
         let beam = |point: usize| {
-            let key = of_channel.map_or(0.0, |column| column.values[point] - keys.from as f64);
-            let channel = *channel_of.get((key.fract() == 0.0 && key >= 0.0).then_some(key as usize)?)?;
-            let time = time.seconds(point, keys.clock);
-            let list = &fired[channel];
-            let after = list.partition_point(|(other, _)| *other < time);
-            let near = [after.checked_sub(1), Some(after)].into_iter().flatten().filter_map(|k| list.get(k));
-            let nearest = near.min_by(|a, b| (a.0 - time).abs().total_cmp(&(b.0 - time).abs()))?;
-            // A quarter of the way to the next firing of the channel; a channel that fires once has no next.
-            let gap = list.windows(2).map(|pair| pair[1].0 - pair[0].0).fold(f64::INFINITY, f64::min);
-            ((nearest.0 - time).abs() <= gap / 4.0).then_some(nearest.1)
+            // Without channels the time alone tells the ray.
+            let channel = of_channel.map_or(Some(0), |column| keys.channel(column, point, &channel_of))?;
+            fired.channels[channel].beam_at(seconds(point))
         };
         Some(self.of_beams(cloud, is_point, beam, by))
+    }
+
+    /// The field that has the times of points, and what it says by a clock, in seconds.
+    pub(super) fn stated_times<'c>(
+        &self,
+        cloud: &'c Cloud,
+        clock: Clock,
+    ) -> Option<(&'static str, impl Fn(usize) -> f64 + use<'c>)> {
+        let field = time_field(cloud, &self.times()?)?;
+        Some((field.name, move |point: usize| field.seconds(point, clock)))
+    }
+
+    /// When the beams fire by a clock; `None` if the pack does not know, or two of a channel fire at one time.
+    pub(super) fn fired(&self, clock: Clock) -> Option<Fired> {
+        let times = self.asked_times(&self.times()?, clock);
+        let mut lists = vec![Vec::new(); self.channels().unwrap_or(1)];
+        let channels = lists.len();
+        for (beam, &time) in times.iter().enumerate() {
+            lists[beam % channels].push((time, beam));
+        }
+        let channels = lists.into_iter().map(ChannelTimes::new).collect::<Option<_>>()?;
+        Some(Fired { times, channels })
     }
 
     /// Times of the beams, seconds.
@@ -160,7 +204,10 @@ impl Asked<'_> {
     }
 
     /// The field that has the channel, and the rule in words; a pattern without channels has none.
-    fn channel_field<'c>(&self, cloud: &'c Cloud) -> Option<(Option<&'c CloudColumn>, &'static str)> {
+    pub(super) fn channel_field<'c>(
+        &self,
+        cloud: &'c Cloud,
+    ) -> Option<(Option<&'c CloudColumn>, &'static str)> {
         let of_channel = cloud.column("channel").or_else(|| cloud.column("line"));
         match (of_channel, cloud.column("ring")) {
             _ if self.channels().is_none() => Some((None, "by time")),
@@ -172,7 +219,7 @@ impl Asked<'_> {
     }
 
     /// The channel, in the order of the manual, of each number.
-    fn channel_of_number(&self, is_ring: bool, keys: Keys) -> Vec<usize> {
+    pub(super) fn channel_of_number(&self, is_ring: bool, keys: Keys) -> Vec<usize> {
         let channels = self.channels().unwrap_or(1);
         let elevations = self.scan.and_then(|scan| scan.elevations_deg.as_ref());
         let mut channel_of: Vec<usize> = (0..channels).collect();
@@ -278,9 +325,7 @@ impl Asked<'_> {
         let mut votes = Votes::new(scan, self.channels()?, &|channel| self.rays[channel * self.places])?;
         let every = points.len().div_ceil(MAX_MEASURED).max(1);
         for point in (0..points.len()).step_by(every).filter(|&point| is_point[point]) {
-            let key = column.values[point] - keys.from as f64;
-            let is_whole = key.fract() == 0.0 && key >= 0.0;
-            let Some(&channel) = channel_of.get(key as usize).filter(|_| is_whole) else { continue };
+            let Some(channel) = keys.channel(column, point, &channel_of) else { continue };
             let Some(pose) = scan.mounting.at(time.seconds(point, keys.clock)) else { continue };
             let of_sensor = match frame {
                 CloudFrame::Sensor => points[point],

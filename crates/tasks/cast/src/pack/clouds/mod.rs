@@ -4,6 +4,7 @@
 //! file       a file of a cloud: PCD, PLY or a bag
 //! assign     the ray of each point: by channel and time, by order, or by direction
 //! keys       what the fields of a cloud say of these: channel and time
+//! each_key   the same of each by itself, of points that are laid without them
 //! beams      the returns of beams with a width, a ray for each
 //! numbers    by which rules simulators count them
 //! rules      which rule it is, and which other ones a mistake may have followed
@@ -18,6 +19,7 @@
 
 mod assign;
 mod beams;
+mod each_key;
 mod file;
 pub(super) mod fit;
 mod keys;

@@ -9,6 +9,7 @@ use raypencil_scene::CastRay;
 
 use super::assign::{Asked, Assigned, BY_DIRECTION, Order, number_of_return, too_many, unclear};
 use super::beams::Beams;
+use super::each_key::EachKey;
 use super::file;
 use super::fit::rounded;
 use super::keys::{BY_RING, Clock, Keys, is_key, usual_ring};
@@ -37,6 +38,10 @@ pub struct CloudFacts {
     pub strays: Vec<usize>,
     /// Whether the field `range` was judged too.
     pub has_range: bool,
+    /// Names of the fields that tell the ray of a point and were judged, or laid the points on their rays.
+    pub keys: Vec<String>,
+    /// Names of such fields that were not judged: the pack knows nothing of them, or another field tells the same.
+    pub unjudged: Vec<String>,
     /// Indices of the rays whose points have another ring, channel or time than theirs, as order or another time tells it.
     pub wrong_keys: Vec<usize>,
     /// What explains them.
@@ -237,14 +242,16 @@ pub(in crate::pack) fn read_cloud_of<'a>(
         found.point_of.iter().map(of).unzip()
     });
     // Keys that do not tell the rays are wrong themselves.
-    let of_usual = asked.by_keys(&cloud, &is_point, Keys::of(usual));
-    let wrong_keys = of_usual.as_ref().map_or_else(Vec::new, |of_usual| said.unlike(&found, of_usual));
+    let EachKey { wrong: wrong_keys, compared: keys } = said.of_rays(&found, Keys::of(usual));
     let keys_why = if wrong_keys.is_empty() { None } else { said.why(&found, &exchanged) };
     let of_returns = number_of_return(&cloud);
     let (numbered, wrong_numbers, numbers_why) = match (of_returns, beams) {
         (Some(column), Some(beams)) => wrong_numbers(&found, beams, (column, &is_point)),
         _ => (0, Vec::new(), None),
     };
+    let of_numbers = of_returns.filter(|_| beams.is_some()).map(|column| &column.name);
+    let is_unjudged = |name: &&String| is_key(name) && !keys.contains(name) && Some(*name) != of_numbers;
+    let unjudged = cloud.columns.iter().map(|column| &column.name).filter(is_unjudged).cloned().collect();
     let facts = CloudFacts {
         wrong_keys,
         keys_why,
@@ -258,6 +265,8 @@ pub(in crate::pack) fn read_cloud_of<'a>(
         assigned: found.by,
         strays: found.strays,
         has_range: ranges.is_some(),
+        keys,
+        unjudged,
     };
     Ok(CloudCase {
         shape,
@@ -327,9 +336,21 @@ impl Said<'_> {
         pairs.filter(|(_, pair)| is_unlike(*pair)).map(|(ray, _)| ray).collect()
     }
 
+    /// What the fields say of points on their rays: both together where they tell rays apart, else each by itself.
+    fn of_rays(&self, found: &Assigned, keys: Keys) -> EachKey {
+        let each = self.asked.each_key(self.cloud, (found, self.is_point), keys);
+        match self.by(keys) {
+            Some(of_keys) => EachKey { wrong: self.unlike(found, &of_keys), ..each },
+            None => each,
+        }
+    }
+
     /// What explains keys that are not those of the rays, in words.
     fn why(&self, found: &Assigned, exchanged: Exchanged<'_>) -> Option<String> {
-        let explains = |keys: Keys| self.by(keys).is_some_and(|keys| self.unlike(found, &keys).is_empty());
+        let explains = |keys: Keys| {
+            let EachKey { wrong, compared } = self.of_rays(found, keys);
+            wrong.is_empty() && !compared.is_empty()
+        };
         let of_ring = || {
             let all = rings(self.usual.ring);
             let ring = all.iter().find(|(_, ring)| explains(Keys { ring: *ring, ..self.usual }));
