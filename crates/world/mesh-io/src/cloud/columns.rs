@@ -115,3 +115,22 @@ pub(crate) fn decimal(word: &str, of_single: bool) -> Option<f64> {
     let is_held = if of_single { (number as f32).is_finite() } else { number.is_finite() };
     (is_held || !word.contains(|digit: char| digit.is_ascii_digit())).then_some(number)
 }
+
+/// A whole number, printed in any way, such as `3.0`; `None` for what a whole number of so many bytes does not hold.
+pub(crate) fn whole_decimal(word: &str, is_signed: bool, bytes: usize) -> Option<f64> {
+    /// 2^53: all whole numbers up to it are doubles.
+    const MAX_EXACT: f64 = 9_007_199_254_740_992.0;
+    let number: i128 = match word.parse() {
+        Ok(number) => number,
+        Err(_) => {
+            let number: f64 = word.parse().ok()?;
+            (number.fract() == 0.0 && number.abs() <= MAX_EXACT).then_some(number as i128)?
+        }
+    };
+    let bits = 8 * bytes;
+    let held = match is_signed {
+        true => -(1 << (bits - 1))..1_i128 << (bits - 1),
+        false => 0..1_i128 << bits,
+    };
+    held.contains(&number).then_some(number as f64)
+}

@@ -9,8 +9,8 @@ mod pcd;
 mod printed;
 mod read;
 
-pub(crate) use columns::decimal;
 pub use columns::{Cloud, CloudColumn, CloudStorage};
+pub(crate) use columns::{decimal, whole_decimal};
 pub use lzf::compressed as lzf_compressed;
 pub use packed::{PackedField, PackedKind, PackedPoints};
 pub(crate) use printed::{Printed, with_decimals};

@@ -2,7 +2,7 @@
 
 use raypencil_files::Fault;
 
-use super::columns::{Cloud, CloudColumn, CloudStorage, check_names, decimal};
+use super::columns::{Cloud, CloudColumn, check_names, decimal, whole_decimal};
 use super::lzf;
 use super::packed::{PackedField, PackedKind, PackedPoints, check_fields};
 use super::printed::{Printed, with_decimals};
@@ -289,9 +289,19 @@ fn of_text(
             if keeps(field)
                 && let Some((column, of_text)) = kept.next()
             {
-                let Some(number) = decimal(words[at], column.storage == CloudStorage::Single) else {
-                    let expected = "a decimal number, or nan, that its type holds";
-                    return Err(Fault::new(place(), format!("{:?}", words[at]), expected));
+                let number = match field.kind {
+                    PackedKind::Real => decimal(words[at], field.size == 4),
+                    PackedKind::Signed => whole_decimal(words[at], true, field.size),
+                    PackedKind::Unsigned => whole_decimal(words[at], false, field.size),
+                };
+                let Some(number) = number else {
+                    let kind = match field.kind {
+                        PackedKind::Real => "decimal number, or nan,",
+                        _ => "whole number",
+                    };
+                    let place = format!("{}, field `{}`", place(), field.name);
+                    let expected = format!("a {kind} that its type holds ({} bytes)", field.size);
+                    return Err(Fault::new(place, format!("{:?}", words[at]), expected));
                 };
                 column.values.push(number);
                 of_text.push(Printed::of(words[at]));

@@ -141,7 +141,7 @@ fn what_is_no_cloud_is_refused_in_one_sentence() {
             "line 10: bytes that are no text; expected numbers as text, as `DATA ascii` says (is it DATA binary?)",
         ),
         ("DATA ascii\n1 2 3\n", "", "line 8: the end of the header"),
-        ("1 2 3", "1 2 x", "line 9: \"x\"; expected a decimal number, or nan"),
+        ("1 2 3", "1 2 x", "line 9, field `z`: \"x\"; expected a decimal number, or nan"),
         ("1 2 3", "1 2 3\n4 5 6", "line 10: a line after the last point"),
         ("VERSION .7", "VERTEX", "file: neither `ply` nor the header of a PCD file"),
         ("HEIGHT 1", "DEPTH 1", "line 6: DEPTH; expected VERSION, FIELDS"),
@@ -284,4 +284,95 @@ fn a_copy_reaches_8192_bytes_back_and_no_further() {
     // Three bytes from 8191 + 1 back; or as they are.
     assert!(apart(8192).ends_with(&[1 << 5 | 31, 255]), "{:?}", apart(8192));
     assert!(apart(8193).ends_with(&[2, 1, 2, 3]), "{:?}", apart(8193));
+}
+
+#[test]
+fn whole_numbers_beyond_their_type_and_fractions_are_refused() {
+    let pcd = |kind: char, size: usize, word: &str| {
+        let head = format!(
+            "VERSION 0.7\nFIELDS x y z ring\nSIZE 4 4 4 {size}\nTYPE F F F {kind}\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii"
+        );
+        read(format!("{head}\n0 1 2 {word}\n").as_bytes())
+    };
+    let ply = |kind: char, size: usize, word: &str| {
+        let name = match size {
+            1 => "char",
+            2 => "short",
+            _ => "int",
+        };
+        let sign = if kind == 'U' { "u" } else { "" };
+        let head =
+            "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z";
+        read(format!("{head}\nproperty {sign}{name} ring\nend_header\n0 1 2 {word}\n").as_bytes())
+    };
+    let limits: [(char, usize, &str, &str); 6] = [
+        ('U', 1, "0", "255"),
+        ('I', 1, "-128", "127"),
+        ('U', 2, "0", "65535"),
+        ('I', 2, "-32768", "32767"),
+        ('U', 4, "0", "4294967295"),
+        ('I', 4, "-2147483648", "2147483647"),
+    ];
+    for of in [&pcd as &dyn Fn(char, usize, &str) -> Result<Cloud, String>, &ply] {
+        for (kind, size, least, most) in limits {
+            for held in [least, most] {
+                let value: f64 = held.parse().expect("a number");
+                for word in [held.to_string(), format!("{held}.0"), format!("{value:e}")] {
+                    let cloud =
+                        of(kind, size, &word).unwrap_or_else(|error| panic!("{kind}{size} {word}: {error}"));
+                    assert_eq!(cloud.column("ring").expect("a field").values, [value], "{kind}{size} {word}");
+                }
+            }
+            let value = |word: &str| word.parse::<i64>().expect("a number");
+            let beyond = [(value(least) - 1).to_string(), (value(most) + 1).to_string()];
+            let others = ["0.5", "nan", "inf", "1e300", "five"].map(String::from);
+            for word in beyond.into_iter().chain(others) {
+                let message = of(kind, size, &word).expect_err("no such number");
+                assert!(
+                    message.contains(&word) && message.contains("a whole number that its type holds"),
+                    "{message}"
+                );
+            }
+        }
+    }
+    // 64 bits, which PLY does not have: the last numbers are told apart though no double does.
+    for (kind, held, beyond) in [
+        ('U', "18446744073709551615", "18446744073709551616"),
+        ('I', "9223372036854775807", "9223372036854775808"),
+        ('I', "-9223372036854775808", "-9223372036854775809"),
+    ] {
+        assert!(pcd(kind, 8, held).is_ok());
+        let message = pcd(kind, 8, beyond).expect_err("no such number");
+        assert!(message.contains("line 9, field `ring`") && message.contains(beyond), "{message}");
+    }
+    // What a double does not tell apart is to be printed as digits alone.
+    assert!(pcd('U', 8, "100000000000000000").is_ok() && pcd('U', 8, "1e17").is_err());
+}
+
+#[test]
+fn lengths_and_corners_of_polygons_fit_their_types() {
+    let mesh = |length: &str, index: &str, row: &str| {
+        let mut text = "ply\nformat ascii 1.0\nelement vertex 300\nproperty float x\nproperty float y\nproperty float z\n".to_string();
+        text += &format!("element face 1\nproperty list {length} {index} vertex_indices\nend_header\n");
+        for k in 0..300 {
+            text += &format!("{k} {} 0\n", k * k);
+        }
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("m.ply");
+        std::fs::write(&path, text + row).expect("a file");
+        raypencil_mesh_io::read_triangles(&path)
+            .map(|read| read.triangles.faces().len())
+            .map_err(|error| error.to_string())
+    };
+    assert_eq!(mesh("uchar", "int", "3 0 1 299\n"), Ok(1));
+    let message = mesh("uchar", "uchar", "3 0 1 256\n").expect_err("a byte ends at 255");
+    assert!(
+        message.contains("line 310") && message.contains("256") && message.contains("(uchar)"),
+        "{message}"
+    );
+    let corners: Vec<String> = (0..256).map(|k: i32| k.to_string()).collect();
+    let polygon = format!("256 {}\n", corners.join(" "));
+    let message = mesh("uchar", "int", &polygon).expect_err("a byte ends at 255");
+    assert!(message.contains("256") && message.contains("(uchar)"), "{message}");
+    assert_eq!(mesh("ushort", "short", &polygon), Ok(254));
 }

@@ -36,6 +36,20 @@ impl Number {
             Self::Signed(bytes) | Self::Unsigned(bytes) | Self::Real(bytes) => bytes,
         }
     }
+
+    /// Its old name, which most files have.
+    pub(super) fn type_name(self) -> &'static str {
+        match self {
+            Self::Signed(1) => "char",
+            Self::Signed(2) => "short",
+            Self::Signed(_) => "int",
+            Self::Unsigned(1) => "uchar",
+            Self::Unsigned(2) => "ushort",
+            Self::Unsigned(_) => "uint",
+            Self::Real(4) => "float",
+            Self::Real(_) => "double",
+        }
+    }
 }
 
 /// A number of each row of an element, or a list of them.

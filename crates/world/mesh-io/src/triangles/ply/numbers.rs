@@ -2,7 +2,7 @@
 
 use raypencil_files::Fault;
 
-use crate::cloud::{Printed, decimal};
+use crate::cloud::{Printed, decimal, whole_decimal};
 use crate::triangles::ply::header::{Element, Number};
 use crate::triangles::text::{self, Lines, quoted, words};
 
@@ -194,17 +194,35 @@ impl Numbers for Text<'_> {
     fn real(&mut self, number: Number) -> Result<f64, Fault> {
         let word = self.word();
         let text = word.and_then(|word| std::str::from_utf8(word).ok());
-        let real = text.and_then(|text| decimal(text, matches!(number, Number::Real(4))));
-        real.ok_or_else(|| Fault::new(self.place(), quoted(word), "a decimal number that its type holds"))
+        let real = text.and_then(|text| match number {
+            Number::Real(bytes) => decimal(text, bytes == 4),
+            Number::Signed(bytes) => whole_decimal(text, true, bytes),
+            Number::Unsigned(bytes) => whole_decimal(text, false, bytes),
+        });
+        real.ok_or_else(|| {
+            let expected = match number {
+                Number::Real(_) => "a decimal number that its type holds".to_string(),
+                _ => format!("a whole number that its type holds ({})", number.type_name()),
+            };
+            Fault::new(self.place(), quoted(word), expected)
+        })
     }
 
     fn printed(&self) -> Option<Printed> {
         Some(Printed::of(std::str::from_utf8(self.last).unwrap_or_default()))
     }
 
-    fn whole(&mut self, _: Number) -> Result<i64, Fault> {
+    fn whole(&mut self, number: Number) -> Result<i64, Fault> {
         let word = self.word();
-        text::whole(word, || self.place())
+        let whole = text::whole(word, || self.place())?;
+        let text = word.and_then(|word| std::str::from_utf8(word).ok()).unwrap_or_default();
+        match whole_decimal(text, matches!(number, Number::Signed(_)), number.bytes()) {
+            Some(_) => Ok(whole),
+            None => {
+                let expected = format!("a whole number that its type holds ({})", number.type_name());
+                Err(Fault::new(self.place(), quoted(word), expected))
+            }
+        }
     }
 
     fn skip(&mut self, _: Number, count: u64) -> Result<(), Fault> {

@@ -184,9 +184,13 @@ fn wrong_rows_of_ply() {
         (("3 3 2 4", "3 3 2 5"), "line 21, polygon 1: vertex 5; expected an index below 5"),
         (("3 3 2 4", "3 3 -1 4"), "line 21, polygon 1: vertex -1; expected an index below 5"),
         (("3 3 2 4 2", "2 3 2 2"), "line 21, polygon 1: 2 corners; expected 3 or more"),
-        (("3 3 2 4", "4294967295 3 2 4"), "line 21: \"0.5\"; expected a whole number"),
+        (("3 3 2 4", "255 3 2 4"), "line 21: \"0.5\"; expected a whole number"),
+        (
+            ("3 3 2 4", "4294967295 3 2 4"),
+            "line 21: \"4294967295\"; expected a whole number that its type holds (uchar)",
+        ),
         (("0.5 0.5", "0.5"), "line 21: 1 numbers to the end of the line; expected 2 numbers"),
-        (("4 2 0.5", "4 -2 0.5"), "line 21: a list of -2 numbers; expected 0 numbers or more"),
+        (("4 2 0.5", "4 -2 0.5"), "line 21: \"-2\"; expected a whole number that its type holds (uchar)"),
         (("17", "17 18"), "line 22: \"18\"; expected the end of the line"),
         (("17\n", "17\n18\n"), "line 23: a line after the last row; expected the end of the file"),
         (("17", ""), "line 22: the end of the file; expected more lines of numbers"),
@@ -215,6 +219,13 @@ fn wrong_rows_of_ply() {
         assert!(text.contains(change.0), "{change:?}");
         refused("a.ply", text.replacen(change.0, change.1, 1), message);
     }
+    // A length of a type with a sign.
+    let signed = text.replacen("list uchar float", "list char float", 1);
+    refused(
+        "a.ply",
+        signed.replacen("4 2 0.5", "4 -2 0.5", 1),
+        "line 21: a list of -2 numbers; expected 0 numbers or more",
+    );
     // Beside faces strips would be a part of the mesh that nobody sees; without rows they are nothing.
     let strips = |count: u32| {
         let element = format!("element tristrips {count}\nproperty list int int vertex_indices\nend_header");
