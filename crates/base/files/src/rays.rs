@@ -155,16 +155,35 @@ impl Heading {
     /// The heading in the comments before the first line of numbers, as NumPy's `savetxt` writes it. Other comments are none; but one
     /// that is meant as a heading must be one.
     fn of_comments(bytes: &[u8]) -> Result<Option<Self>, Fault> {
-        let lines = bytes.split(|byte| *byte == b'\n').zip(1..);
-        let before = lines.take_while(|(line, _)| line.starts_with(b"#") || line.trim_ascii().is_empty());
-        let words = |(line, number): (&[u8], u64)| {
-            let is_name = |word: &str| NAMES.iter().any(|name| word.eq_ignore_ascii_case(name));
-            let line = std::str::from_utf8(line).ok()?;
-            let words = heading_in_comment(line, MIN_NAMES..=NAMES.len(), is_name)?;
-            Some((words, number))
-        };
-        let last = before.filter_map(words).last();
-        last.map(|(words, line)| Self::of(words.iter().map(String::as_str), line)).transpose()
+        let before = numbered_lines(bytes).take_while(|(line, _)| is_no_row(line));
+        before.filter_map(Self::of_comment).last().transpose()
+    }
+
+    /// The heading in a comment, with the number of its line; `None`: it is none.
+    fn of_comment((line, number): (&[u8], u64)) -> Option<Result<Self, Fault>> {
+        let is_name = |word: &str| NAMES.iter().any(|name| word.eq_ignore_ascii_case(name));
+        let line = std::str::from_utf8(line).ok().filter(|line| line.starts_with('#'))?;
+        let words = heading_in_comment(line, MIN_NAMES..=NAMES.len(), is_name)?;
+        Some(Self::of(words.iter().map(String::as_str), number))
+    }
+
+    /// Refuses a heading between rows, as files have that were joined, if it names other columns than these.
+    fn check_others(bytes: &[u8], places: &[usize]) -> Result<(), Fault> {
+        let after = numbered_lines(bytes).skip_while(|(line, _)| is_no_row(line));
+        for other in after.filter_map(Self::of_comment) {
+            let other = other?;
+            if other.places != places {
+                let names =
+                    |places: &[usize]| places.iter().map(|&place| NAMES[place]).collect::<Vec<_>>().join(",");
+                let found = format!("a heading of other columns, {}", names(&other.places));
+                let expected = format!(
+                    "{}, as the rows before it (files that were joined are to be read one by one)",
+                    names(places)
+                );
+                return Err(Fault::new(format!("line {}", other.line), found, expected));
+            }
+        }
+        Ok(())
     }
 
     /// The numbers of a ray from those of a row; what has no column is left at what it is without.
@@ -173,6 +192,16 @@ impl Heading {
         self.places.iter().zip(numbers).for_each(|(place, number)| row[*place] = *number);
         row
     }
+}
+
+/// The lines of a text with their numbers.
+fn numbered_lines(bytes: &[u8]) -> impl Iterator<Item = (&[u8], u64)> {
+    bytes.split(|byte| *byte == b'\n').zip(1..)
+}
+
+/// Whether a line is a comment or empty.
+fn is_no_row(line: &[u8]) -> bool {
+    line.starts_with(b"#") || line.trim_ascii().is_empty()
 }
 
 fn of_csv(bytes: &[u8], file: &Path) -> Result<RayArray, FileError> {
@@ -237,5 +266,8 @@ fn of_csv(bytes: &[u8], file: &Path) -> Result<RayArray, FileError> {
     if rays.is_empty() {
         return Err(in_file(Fault::new("file", "no ray", format!("rows of {ROW}"))));
     }
+    let of_numbers: Vec<usize> = (0..numbers.len()).collect();
+    let places = heading.as_ref().map_or(&of_numbers, |heading| &heading.places);
+    Heading::check_others(bytes, places).map_err(in_file)?;
     Ok(RayArray { shape: vec![rays.len() as u64], rays })
 }

@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use glam::{DQuat, DVec3};
-use raypencil_files::{Fault, FileError, Sha256Digest, bytes, file_sha256, sha256};
+use raypencil_files::{Fault, FileError, Sha256Digest, bytes, file_sha256, heading_in_comment, sha256};
 use raypencil_rosbag::{BagPose, PoseChoice, read_poses};
 use raypencil_scene::Pose;
 use raypencil_scene::pattern::TimedPose;
@@ -108,11 +108,20 @@ fn read(text: &str) -> Result<Vec<TimedPose>, Fault> {
     let mut poses: Vec<TimedPose> = Vec::new();
     for (number, line) in (1..).zip(text.trim_start_matches('\u{feff}').lines()) {
         let comment = line.trim_start().strip_prefix('#');
-        let fields = fields(comment.unwrap_or(line));
+        // In a comment a unit may stand behind a blank.
+        let is_known = |name: &str| (0..8).any(|column| is_name(column, name));
+        let in_comment = comment.and_then(|comment| heading_in_comment(comment, 8..=8, is_known));
+        let fields: Vec<&str> = match &in_comment {
+            Some(words) => words.iter().map(String::as_str).collect(),
+            None => fields(comment.unwrap_or(line)),
+        };
         let refuse =
             |found: String, expected: String| Err(Fault::new(format!("line {number}"), found, expected));
         let is_heading = fields.len() == 8 && fields.iter().all(|field| field.parse::<f64>().is_err());
-        if poses.is_empty() && is_heading {
+        // Between rows stands the heading of a file that was joined to another; a remark of eight words may stand there as well.
+        let is_part = |name: &&&str| (4..8).any(|column| is_name(column, name));
+        let names_quaternion = || fields.iter().filter(is_part).count() >= 4;
+        if is_heading && (poses.is_empty() || (comment.is_some() && names_quaternion())) {
             // Also behind a `#`: other formats have the scalar first, or nanoseconds, and say so there.
             if !fields.iter().enumerate().all(|(column, name)| is_name(column, name)) {
                 return refuse(fields.join(" "), format!("columns in the order {ORDER}"));
@@ -204,6 +213,33 @@ mod tests {
     const ROW: &str = "1 2 3 4 0 0 0 1\n";
 
     #[test]
+    fn headings_between_rows_must_name_it_too() {
+        let joined = |heading: &str| {
+            format!("# timestamp tx ty tz qx qy qz qw\n{ROW}{heading}\n{}", ROW.replacen('1', "2", 1))
+        };
+        for heading in [
+            "# timestamp tx ty tz qx qy qz qw",
+            "#t x y z qx qy qz qw",
+            "# we stop here to wait for the rover",
+        ] {
+            let poses = poses_from_text(&joined(heading), Path::new("p")).expect(heading);
+            assert_eq!(poses.len(), 2, "{heading}");
+        }
+        for heading in [
+            "# timestamp tx ty tz qw qx qy qz",
+            "#timestamp [ns] x y z qx qy qz qw",
+            "# qx qy qz qw x y z t",
+            "# t [s], x [m], y [m], z [m], qw, qx, qy, qz",
+        ] {
+            let message = refusal(&joined(heading));
+            assert!(
+                message.contains("line 3") && message.contains("columns in the order timestamp"),
+                "{message}"
+            );
+        }
+    }
+
+    #[test]
     fn headings_must_name_the_order() {
         for heading in [
             "# timestamp tx ty tz qx qy qz qw",
@@ -211,6 +247,7 @@ mod tests {
             "\u{feff}t,p_x [m],p_y [m],p_z [m],q_x [],q_y [],q_z [],q_w []",
             "# ground truth trajectory",
             "#timestamp [s],x,y,z,ox,oy,oz,ow",
+            "# t [s] x [m] y [m] z [m] qx qy qz qw",
         ] {
             let rows =
                 format!("{heading}\n\n{}", ROW.replace(' ', if heading.contains(',') { "," } else { "\t" }));
@@ -223,6 +260,7 @@ mod tests {
         for heading in [
             "# timestamp tx ty tz qw qx qy qz",
             "#timestamp [ns],p_x,p_y,p_z,q_x,q_y,q_z,q_w",
+            "# timestamp [ns] x y z qx qy qz qw",
             "time_s,x_mm,y_mm,z_mm,qx,qy,qz,qw",
             "time,qx,qy,qz,qw,x,y,z",
         ] {

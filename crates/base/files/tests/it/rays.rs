@@ -80,7 +80,7 @@ fn a_heading_names_the_columns() {
     assert_eq!(ray(all), (both.0, both.1, [0.25, 7.0, 0.5]));
     // NumPy's savetxt writes its heading as a comment; other comments are none.
     assert_eq!(ray("# by me\n# dx,dy,dz,ox,oy,oz\n4,5,6,1,2,3"), plain);
-    assert_eq!(ray("# dx,dy,dz\n1,2,3,4,5,6\n# dx,dy,dz,ox,oy,oz\n"), plain);
+    assert_eq!(ray("# dx,dy,dz\n1,2,3,4,5,6\n# of dx,dy,dz\n"), plain);
     let prose = "# rays: ox, oy, oz are the origin, dx, dy, dz the direction\n1,2,3,4,5,6";
     assert_eq!(ray(prose), plain);
     // Of two headings the one next to the numbers counts.
@@ -94,6 +94,11 @@ fn a_heading_names_the_columns() {
     }
     assert_eq!(ray("\u{feff}dx,dy,dz,ox,oy,oz\n4,5,6,1,2,3"), plain);
     assert_eq!(ray("\u{feff}1,2,3,4,5,6"), plain);
+    // The heading of a file that was joined, with the same columns.
+    for first in ["", "# ox,oy,oz,dx,dy,dz\n", "ox,oy,oz,dx,dy,dz\n"] {
+        let text = format!("{first}1,2,3,4,5,6\n# ox,oy,oz,dx,dy,dz\n1,2,3,4,5,6\n");
+        assert_eq!(read(text.as_bytes()).unwrap().rays.len(), 2, "{text}");
+    }
 }
 
 #[test]
@@ -110,6 +115,24 @@ fn each_wrong_file_is_told_where_it_is_wrong() {
             npy("<f4", "(1, 6)", &singles(&[0.0; 6])),
             "rays: ray 0.direction is [0, 0, 0]: expected three finite numbers",
         ),
+        // Files that were joined.
+        (
+            b"# dx,dy,dz,ox,oy,oz\n0,0,1,0,0,0\n# ox,oy,oz,dx,dy,dz\n1,1,1,1,1,1".to_vec(),
+            "rays: line 3: a heading of other columns, ox,oy,oz,dx,dy,dz; expected dx,dy,dz,ox,oy,oz, as the rows before it",
+        ),
+        (
+            b"0,0,0,0,0,1\n\n# dx,dy,dz,ox,oy,oz\n1,1,1,1,1,1".to_vec(),
+            "rays: line 3: a heading of other columns, dx,dy,dz,ox,oy,oz; expected ox,oy,oz,dx,dy,dz, as the rows before it",
+        ),
+        (
+            b"dx,dy,dz,ox,oy,oz\n0,0,1,0,0,0\n# ox oy oz dx dy dz\n1,1,1,1,1,1".to_vec(),
+            "rays: line 3: a heading of other columns",
+        ),
+        (
+            b"0,0,0,0,0,1\n# ox,oy,oz,dx,dy,dz,t_min,t_max\n0,0,0,0,0,1".to_vec(),
+            "rays: line 2: a heading of other columns",
+        ),
+        (b"0,0,0,0,0,1\n# dx,dy,dz,x,y,z\n0,0,0,0,0,1".to_vec(), "rays: line 2: \"x\"; expected a heading"),
         (b"0,0,0,0,0,1\n0,0,0,0,0".to_vec(), "rays: line 2: 5 fields; expected 6 numbers"),
         (b"0,0,0,0,0,1\n0,0,0,0,0,1,0,1".to_vec(), "rays: line 2: 8 fields; expected 6, as line 1 has"),
         (

@@ -249,7 +249,7 @@ fn angles_of_a_file_are_rays_with_times() {
     {
         for rest in ["# 3 rows\n", ""] {
             let text = format!(
-                "{rest}# {heading}\n# of a rosette\n0,90,90\n0.25,-90,60\n# time,azimuth,phi\n0.5,180,180\n"
+                "{rest}# {heading}\n# of a rosette\n0,90,90\n0.25,-90,60\n# {heading}\n0.5,180,180\n"
             );
             assert_eq!(read(&text, "").unwrap(), zeniths, "{text}");
         }
@@ -260,6 +260,18 @@ fn angles_of_a_file_are_rays_with_times() {
             "",
             "rosette.csv: line 1: 2 fields; expected 3 with commas between them: time, azimuth, elevation",
         ),
+        // Files that were joined.
+        (
+            "# time,azimuth,zenith\n0,90,90\n# time,azimuth,elevation\n1,90,0\n",
+            "",
+            "line 3: a heading with elevation; expected zenith, as the rows before it have",
+        ),
+        (
+            "0,90,0\n# Time/s,Azimuth/deg,Zenith/deg\n1,90,90\n",
+            "",
+            "line 2: a heading with zenith; expected elevation, as the rows before it have",
+        ),
+        ("0,90,0\n# time,azimuth,phi\n1,90,0\n", "", "line 2: time,azimuth,phi; expected columns"),
         ("0,90,91\n", "", "line 1: field 3: \"91\"; expected -90 to 90, as time, azimuth, elevation"),
         ("0,1,2\n0,nan,2\n", "", "line 2: field 2: \"nan\"; expected -360 to 360"),
         (

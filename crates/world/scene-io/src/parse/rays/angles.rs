@@ -162,8 +162,16 @@ fn rows(bytes: &[u8]) -> Result<Vec<[f64; 3]>, Fault> {
         }
         if line.trim_start().starts_with('#') {
             // As NumPy writes a heading: other comments are none, but one that is meant as a heading must be one.
-            if let Some(words) = heading_in_comment(line, 3..=3, is_name).filter(|_| rows.is_empty()) {
-                is_zenith = is_of_zeniths([&words[0], &words[1], &words[2]], number)?;
+            if let Some(words) = heading_in_comment(line, 3..=3, is_name) {
+                let is_of_zeniths = is_of_zeniths([&words[0], &words[1], &words[2]], number)?;
+                // One between rows is that of a file that was joined to another.
+                if !rows.is_empty() && is_of_zeniths != is_zenith {
+                    let angle = |is_of_zeniths: bool| if is_of_zeniths { "zenith" } else { "elevation" };
+                    let found = format!("a heading with {}", angle(is_of_zeniths));
+                    let expected = format!("{}, as the rows before it have", angle(is_zenith));
+                    return Err(Fault::new(format!("line {number}"), found, expected));
+                }
+                is_zenith = is_of_zeniths;
             }
             continue;
         }
