@@ -82,7 +82,7 @@ pub fn campaign_document(merged: &Merged, has: impl Fn(&str) -> bool) -> Documen
         question,
         outcome,
         headline,
-        remarks: explanation.into_iter().map(String::from).chain(whys(merged)).collect(),
+        remarks: explanation.into_iter().chain(whys(merged)).collect(),
         explanation: Vec::new(),
         counts: Vec::new(),
         facts,
@@ -106,10 +106,11 @@ pub fn campaign_document(merged: &Merged, has: impl Fn(&str) -> bool) -> Documen
         ],
         suites: PartName::ALL.into_iter().map(|part| suite(merged, part)).chain([whole(&all)]).collect(),
         format: FORMAT,
-        verdict: match (merged.passes(), all.compared > 0 && all.hits == 0) {
+        verdict: match (merged.passes(), outcome) {
             (true, _) => "agree",
-            (false, true) => "nothing_hit",
-            (false, false) => "defects",
+            (false, Outcome::Open) if all.compared == 0 => "nothing_compared",
+            (false, Outcome::Open) => "nothing_hit",
+            (false, _) => "defects",
         },
         data: campaign_data(merged),
         explorer: String::new(),
@@ -117,7 +118,7 @@ pub fn campaign_document(merged: &Merged, has: impl Fn(&str) -> bool) -> Documen
 }
 
 /// The outcome, in one sentence, and what it stands on.
-fn verdict(merged: &Merged, all: &CampaignTotal<'_>) -> (Outcome, String, Option<&'static str>) {
+fn verdict(merged: &Merged, all: &CampaignTotal<'_>) -> (Outcome, String, Option<String>) {
     let compared = count(all.compared);
     let defects = wrong(&all.by_class);
     let failures = merged.failures().count() as u64;
@@ -126,17 +127,35 @@ fn verdict(merged: &Merged, all: &CampaignTotal<'_>) -> (Outcome, String, Option
             None => "Every ray on which the renderers differ was judged in exact arithmetic.",
             Some(_) => "Every answer of the program under test was compared with the exact one.",
         };
-        (Outcome::Agrees, format!("{compared} rays, no defect, none undecided."), Some(explanation))
+        (Outcome::Agrees, format!("{compared} rays, no defect, none undecided."), Some(explanation.into()))
     } else if failures > 0 {
         let have = counted(failures, "scene has", "scenes have");
         let headline =
             format!("{} of {compared} rays are wrong or undecided; {have} no answer.", count(defects));
         (Outcome::Fails, headline, None)
-    } else if defects == 0 && all.compared > 0 {
+    } else if all.compared == 0 {
+        (Outcome::Open, "Nothing is compared.".into(), Some(nothing_compared(merged)))
+    } else if defects == 0 {
         let headline = format!("Nothing is hit: all {compared} rays miss the terrain.");
-        (Outcome::Open, headline, Some("Such an agreement proves nothing."))
+        (Outcome::Open, headline, Some("Such an agreement proves nothing.".into()))
     } else {
         (Outcome::Fails, format!("{} of {compared} rays are wrong or undecided.", count(defects)), None)
+    }
+}
+
+/// Why no ray was compared, of a campaign in which every scene has its answer.
+fn nothing_compared(merged: &Merged) -> String {
+    let left_out = merged.terrains.iter().filter(|terrain| terrain.parts.is_empty()).count();
+    match merged.campaign.max_faces {
+        Some(most) if left_out > 0 => {
+            let fewest = merged.terrains.iter().map(|terrain| terrain.faces).min().unwrap_or(0);
+            format!(
+                "--max-faces {most} leaves out {left_out} of {} terrains; the smallest has {} faces.",
+                merged.terrains.len(),
+                count(fewest)
+            )
+        }
+        _ => "None of the scenes has a ray to compare.".into(),
     }
 }
 

@@ -380,3 +380,34 @@ fn a_wrong_ray_of_any_scene_fails_its_own_case_and_stands_on_the_screen() {
         }
     }
 }
+
+#[test]
+fn a_campaign_in_which_nothing_is_compared_says_so() {
+    let told = |merged: &Merged| {
+        let summary: Value = serde_json::from_str(&campaign_json(merged)).unwrap();
+        let schema = include_str!("../../../../../docs/formats/campaign.schema.json");
+        assert_eq!(schema_faults(&serde_json::from_str(schema).unwrap(), &summary), [""; 0]);
+        assert!(!merged.passes());
+        (summary["verdict"].as_str().unwrap().to_string(), campaign_screen(merged))
+    };
+    let mut left_out = made_up([0; 6], Vec::new());
+    left_out.campaign.max_faces = Some(12);
+    left_out.terrains.iter_mut().for_each(|terrain| terrain.parts.clear());
+    let (verdict, screen) = told(&left_out);
+    assert_eq!(verdict, "nothing_compared");
+    let words = "--max-faces 12 leaves out 2 of 2 terrains; the smallest has 1,000 faces.";
+    assert!(screen.contains("? Nothing is compared.") && screen.contains(words), "{screen}");
+    // Scenes without a ray are no matter of their faces.
+    let (verdict, screen) = told(&with_hits(0, [0; 6], Vec::new()));
+    assert_eq!(verdict, "nothing_compared");
+    assert!(
+        screen.contains("None of the scenes has a ray to compare.") && !screen.contains("max-faces"),
+        "{screen}"
+    );
+    // A scene without an answer is told, not that nothing is compared.
+    let mut failed = made_up([0; 6], Vec::new());
+    failed.terrains[0].parts[0].failed = Some("it crashed".into());
+    let (verdict, screen) = told(&failed);
+    assert_eq!(verdict, "defects");
+    assert!(screen.contains("1 scene has no answer"), "{screen}");
+}
