@@ -10,6 +10,9 @@ use crate::difference::{ChannelDifference, Difference};
 /// Maximum number of keys that a sentence lists.
 const MAX_NAMED_KEYS: usize = 6;
 
+/// Start of the keys of channels of sets of rays.
+const OF_RAY_SETS: &str = "rays/";
+
 /// Maximum number of wrong cells that are described for a channel.
 const MAX_SHOWN_WRONG_CELLS: usize = 2;
 
@@ -36,11 +39,17 @@ pub(crate) fn rulings(difference: &Difference) -> Vec<String> {
                 .map(|cell| format!("    {}, {}: {}", cell.who, cell.place, cell.what)),
         );
     }
-    if !rulings.not_ruled.is_empty() {
+    let (of_sets, others): (Vec<String>, Vec<String>) =
+        rulings.not_ruled.iter().cloned().partition(|key| key.starts_with(OF_RAY_SETS));
+    if !of_sets.is_empty() {
         lines.push(format!(
-            "not ruled on, since the scene has no such channel: {}",
-            first_keys(&rulings.not_ruled)
+            "not ruled on: {}; diff rules on the camera and the beams. Sets of rays are ruled on by check, with a pack of the scene \
+             (raypencil pack SCENE -o PACK; raypencil check PACK A)",
+            first_keys(&of_sets)
         ));
+    }
+    if !others.is_empty() {
+        lines.push(format!("not ruled on, since the scene has no such channel: {}", first_keys(&others)));
     }
     lines
 }

@@ -296,7 +296,10 @@ fn rulings() -> Rulings {
     };
     let by_class = BTreeMap::from([((Class::Agree, Class::Defect), 1), ((Class::Tie, Class::Agree), 3)]);
     let ruling = ChannelRuling { by_class, not_judged: 1, wrong: vec![wrong] };
-    Rulings { channels: BTreeMap::from([("<b>".to_string(), ruling)]), not_ruled: vec!["face.I".into()] }
+    Rulings {
+        channels: BTreeMap::from([("<b>".to_string(), ruling)]),
+        not_ruled: vec!["face.I".into(), "rays/mast/t".into()],
+    }
 }
 
 /// The text of an HTML page: without styles, pictures and tags, one line for each piece of text.
