@@ -125,8 +125,10 @@ impl DoubleDouble {
         let rest = self.sub(&divisor.mul(&Self::of(first)));
         let (high, low) = fast_two_sum(first, rest.high / divisor.high);
         let quotient = Self { high, low, error: 0.0 };
-        let rest = self.sub(&divisor.mul(&quotient));
-        quotient.with_error(rest.upper_bound() / least * ROUNDED_UP)
+        let rest = self.sub(&divisor.mul(&quotient)).upper_bound();
+        // The quotient of a residue that is not 0 may underflow.
+        let error = if rest == 0.0 { 0.0 } else { rest / least * ROUNDED_UP + f64::MIN_POSITIVE };
+        quotient.with_error(error)
     }
 
     /// The square root; unknown if the number is not certainly positive.
