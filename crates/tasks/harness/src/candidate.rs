@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use raypencil_cast::{CandidateConventions, Stated, read_stated};
-use raypencil_files::{Channels, FileError, Storage, Values, harmless_line, has_maps};
+use raypencil_files::{Channels, Fault, FileError, Storage, Values, harmless_line, has_maps};
 use raypencil_judge::{Recorded, RecordingError};
 use raypencil_pack::{Declarations, Provenance, ProvenanceError, note};
 use raypencil_scene::{Image, NamedRaySet, Scene, SensorId};
@@ -154,12 +154,49 @@ fn stated_ray_sets(
         ignores_faces: declared.ignores_faces,
         ..CandidateConventions::default()
     };
+    refuse_other_sets(folder, scene.ray_sets().iter().map(|set| set.name.as_str()))?;
     let given = |(index, set): (usize, &NamedRaySet)| {
         let of_set = folder.join("rays").join(&set.name);
         let stated = of_set.is_dir().then(|| read_stated(&of_set, &set.shape, conventions));
         Some(stated?.map(|stated| StatedRaySet { index, name: set.name.clone(), stated }))
     };
     scene.ray_sets().iter().enumerate().filter_map(given).collect()
+}
+
+/// Whether a folder has arrays.
+fn has_arrays(folder: &Path) -> bool {
+    let is_array = |path: PathBuf| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("npy"));
+    std::fs::read_dir(folder).is_ok_and(|entries| entries.flatten().any(|entry| is_array(entry.path())))
+}
+
+/// Refuses answers to a set of rays that is not asked for: nobody would judge them.
+pub(crate) fn refuse_other_sets<'n>(
+    folder: &Path,
+    asked: impl Iterator<Item = &'n str> + Clone,
+) -> Result<(), FileError> {
+    let of_sets = folder.join("rays");
+    if !of_sets.is_dir() {
+        return Ok(());
+    }
+    let failed = |error| FileError::io(&of_sets, "read", error);
+    let mut sets: Vec<PathBuf> = Vec::new();
+    for entry in std::fs::read_dir(&of_sets).map_err(failed)? {
+        sets.push(entry.map_err(failed)?.path());
+    }
+    sets.sort();
+    for set in sets.iter().filter(|set| has_arrays(set)) {
+        let name = set.file_name().unwrap_or_default().to_string_lossy();
+        if !asked.clone().any(|asked| asked == name) {
+            let names: Vec<&str> = asked.clone().collect();
+            let expected = match names.as_slice() {
+                [] => "no sets of rays: this scene asks for none (those of a pack are judged by `raypencil check PACK CANDIDATE`)".into(),
+                names => format!("answers to {}", names.join(", ")),
+            };
+            let fault = Fault::new("rays", format!("answers to a set `{name}`"), expected);
+            return Err(FileError::Recording(fault.in_file(set)));
+        }
+    }
+    Ok(())
 }
 
 /// Reads what a recording has beside the maps.

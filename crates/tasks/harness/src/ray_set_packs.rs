@@ -13,6 +13,7 @@ use raypencil_pack::{BundleFindings, FileRole, Manifest, ManifestFile, PackError
 use raypencil_scene::{NamedRaySet, Precision, Progress, Triangles};
 use raypencil_scene_io::Subject;
 
+use crate::candidate::refuse_other_sets;
 use crate::ray_sets::source_of;
 
 /// Name of the file of a pack of rays that a manifest lists.
@@ -102,12 +103,15 @@ pub(crate) fn check_packed_ray_sets(
 ) -> Result<Vec<CheckedRaySet>, FileError> {
     // To verify a large pack takes seconds: not for one without sets.
     if !pack.join("rays").is_dir() {
+        refuse_other_sets(candidate, std::iter::empty())?;
         return Ok(Vec::new());
     }
     let manifest = Manifest::read_verified(pack)?;
     let names = manifest.files.iter().filter(|file| file.role == FileRole::RaySet).filter_map(|file| {
         file.path.strip_prefix("rays/").and_then(|path| path.strip_suffix(RAY_PACK)?.strip_suffix('/'))
     });
+    let names: Vec<&str> = names.collect();
+    refuse_other_sets(candidate, names.iter().copied())?;
     let check = |name: &str| {
         let given = candidate.join(path_of(name));
         let checked = given
@@ -120,7 +124,7 @@ pub(crate) fn check_packed_ray_sets(
         };
         Ok(CheckedRaySet { name: name.to_string(), rays, checked })
     };
-    names.map(check).collect()
+    names.into_iter().map(check).collect()
 }
 
 /// Folder of a set in a pack and in a candidate.

@@ -208,6 +208,31 @@ fn validate_judges_the_sets_of_a_candidate_as_check_does() {
     assert!(shown.contains("agrees on 193 rays") && shown.contains("not given: rays/front"), "{shown}");
 }
 
+/// Answers that nobody would judge: to a set under another name, and to the sets of a pack by its scene, which has none.
+#[test]
+fn answers_to_a_set_that_is_not_asked_for_are_refused() {
+    let folder = folder(SCENE);
+    screen(folder.path(), &["pack", "lidar.toml", "--no-bench", "-o", "pack"], 0);
+    screen(folder.path(), &["render", "lidar.toml", "--with", "tracer", "--format", "npy", "-o", "mine"], 0);
+    screen(folder.path(), &["check", "pack", "mine"], 0);
+    screen(folder.path(), &["validate", "lidar.toml", "--candidate", "mine"], 0);
+    let refused = |line: &[&str], words: &[&str]| assert_trouble(&raypencil(folder.path(), line), words);
+    refused(
+        &["validate", "pack/scene.toml", "--candidate", "mine"],
+        &["answers to a set `down`", "expected no sets of rays", "raypencil check PACK CANDIDATE"],
+    );
+    let sets = folder.path().join("mine/rays");
+    fs::rename(sets.join("front"), sets.join("Front")).expect("another name");
+    for line in [&["check", "pack", "mine"][..], &["validate", "lidar.toml", "--candidate", "mine"]] {
+        refused(line, &["mine/rays/Front", "answers to a set `Front`", "expected answers to down, front"]);
+    }
+    // What has no arrays answers nothing.
+    fs::rename(sets.join("Front"), sets.join("front")).expect("its name");
+    fs::create_dir(sets.join("notes")).expect("a folder");
+    fs::write(sets.join("notes/read.txt"), "mine").expect("a file");
+    screen(folder.path(), &["check", "pack", "mine"], 0);
+}
+
 #[test]
 fn a_candidate_of_sets_of_rays_alone_is_judged() {
     let folder = folder(SCENE);
