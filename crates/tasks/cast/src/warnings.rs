@@ -16,6 +16,16 @@ use crate::columns::ReadingCounts;
 /// Largest share of backs among the first hits, tuned: one half, as for a sensor.
 const MAX_BACK_SHARE: f64 = 0.5;
 
+/// Units that a mesh may be in where its rays are in metres, in metres.
+const UNITS: [(&str, f64); 4] =
+    [("millimetres", 0.001), ("centimetres", 0.01), ("inches", 0.0254), ("feet", 0.3048)];
+
+/// Least share of the rays, one of so many, that hit with another unit or axis, if it is to be told. Tuned.
+const TOLD_SHARE: u64 = 10;
+
+/// Coordinates of rays beyond this are not changed to another unit, in which they would be no rays.
+const MAX_CHANGED: f64 = 1e26;
+
 /// Rays that are asked once more, at most, where none hits: with other limits, and against both sides.
 const MAX_TRIED_RAYS: usize = 4096;
 
@@ -29,9 +39,10 @@ pub struct MeshHome {
 }
 
 impl MeshHome {
-    /// What takes millimetres to metres.
-    fn scale_remedy(self) -> &'static str {
-        if self.is_scene { "--set terrain.scale=0.001" } else { "--scale 0.001" }
+    /// What multiplies the coordinates of the mesh.
+    fn scale_remedy(self, scale: f64) -> String {
+        let option = if self.is_scene { "--set terrain.scale=" } else { "--scale " };
+        format!("{option}{scale}")
     }
 
     /// What says that y is up.
@@ -46,14 +57,14 @@ impl MeshHome {
 /// use raypencil_cast::{MeshHome, Questions, cast, cast_warnings, rays_from_bytes};
 /// use raypencil_scene::{Sides, Silent, Triangles};
 ///
-/// // A floor in millimetres, 1.5 m below a ray that reaches 100 units.
-/// let corners = vec![[0.0, 0.0, 0.0], [4000.0, 0.0, 0.0], [0.0, 4000.0, 0.0]];
+/// // A wall in millimetres, 2 m before a ray that reaches 100 units.
+/// let corners = vec![[2000.0, -4000.0, -4000.0], [2000.0, 4000.0, -4000.0], [2000.0, 0.0, 4000.0]];
 /// let mesh = Triangles::new(corners, vec![[0, 1, 2]])?;
-/// let rays = rays_from_bytes(b"100,100,1500,0,0,-1,0,100", "here".as_ref())?.rays;
+/// let rays = rays_from_bytes(b"0,0,0,1,0,0,0,100", "here".as_ref())?.rays;
 /// let answers = cast(&mesh, &rays, Sides::Both, Questions::default(), &Silent);
 /// let found = cast_warnings((&mesh, MeshHome::default()), &rays, Sides::Both, None, &answers);
 /// let sentence = "the ray does not hit the mesh within its limits. Without them 1 of 1 that were tried would, the nearest at \
-///                 1500 where the limit is 100: is the mesh in another unit, such as millimetres (--scale 0.001)?";
+///                 2000 where the limit is 100: is the mesh in millimetres (--scale 0.001)? 1 of 1 would hit then.";
 /// assert_eq!(found[0].to_string(), sentence);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -117,7 +128,7 @@ pub fn cast_warnings_of<'t>(
         }
         let reach = rays.iter().map(reach).fold(0.0, f64::max);
         found.extend(terrain_too_large(&shape, reach).map(|Warning { code, sentence, .. }| {
-            warning(code, format!("{sentence} ({})", home.scale_remedy()))
+            warning(code, format!("{sentence} ({})", home.scale_remedy(UNITS[0].1)))
         }));
     }
     if let Some(open) = seen.open_edges.filter(|&open| open > 0) {
@@ -227,11 +238,7 @@ impl<'a> Misses<'a> {
         );
         // What lies before the least t is no matter of a unit that is too small.
         Some(match self.hit_is_beyond(ray) {
-            true => format!(
-                "{words} where the limit is {}: is the mesh in another unit, such as millimetres ({})?",
-                number(reach(ray)),
-                self.home.scale_remedy()
-            ),
+            true => format!("{words} where the limit is {}{}", number(reach(ray)), self.question()),
             false => {
                 let from = number(ray.t_min * ray.direction.length());
                 format!("{words}, before the {from} from which its hits count (t_min).")
@@ -264,15 +271,38 @@ impl<'a> Misses<'a> {
         let (first, last) = origins.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), origin| {
             (low.min(origin), high.max(origin))
         });
-        let remedy = if self.home.is_scene { "terrain.scale, terrain.up" } else { "--scale, --up" };
         Some(format!(
-            "{none}, however far they reach. It lies between {} and {}, and the rays begin between {} and {}: is its unit or its \
-             up axis another ({remedy})?",
+            "{none}, however far they reach. It lies between {} and {}, and the rays begin between {} and {}{}",
             place(low),
             place(high),
             place(first),
-            place(last)
+            place(last),
+            self.question()
         ))
+    }
+
+    /// Which other unit or axis of the mesh lets rays hit, as the end of a sentence. The rays are changed in place of the mesh.
+    fn question(&self) -> String {
+        let tried = self.tried.len();
+        let asked = |remedy: &str, what: &str, change: &dyn Fn(DVec3) -> DVec3| {
+            let changed = |ray: &CastRay| {
+                let [origin, direction] = [ray.origin, ray.direction].map(change);
+                CastRay { origin, direction, ..*ray }
+            };
+            let Tried { hits, .. } = self.ask(self.sides, changed)?;
+            (TOLD_SHARE * hits >= tried as u64)
+                .then(|| format!(": {what} ({remedy})? {hits} of {tried} would hit then."))
+        };
+        let fits = |ray: &&CastRay| ray.origin.abs().max(ray.direction.abs()).max_element() <= MAX_CHANGED;
+        if !self.tried.iter().all(fits) {
+            return ".".into();
+        }
+        let y_up =
+            asked(self.home.up_remedy(), "is y up in the mesh's file", &|v| DVec3::new(v.x, v.z, -v.y));
+        let of_unit = |(unit, scale): (&str, f64)| {
+            asked(&self.home.scale_remedy(scale), &format!("is the mesh in {unit}"), &|v| v / scale)
+        };
+        y_up.or_else(|| UNITS.into_iter().find_map(of_unit)).unwrap_or_else(|| ".".into())
     }
 }
 

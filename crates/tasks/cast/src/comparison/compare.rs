@@ -167,6 +167,10 @@ fn is_corner(weights: [f64; 3]) -> bool {
     [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].contains(&weights)
 }
 
+/// Ways to move a ray sideways, as parts of how far rounding may move it.
+const AROUND: [[f64; 2]; 8] =
+    [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]];
+
 /// The same ray without its ends.
 fn endless(ray: &CastRay) -> CastRay {
     CastRay { t_min: 0.0, t_max: f64::INFINITY, ..*ray }
@@ -212,11 +216,61 @@ impl Judge<'_> {
                     None => (None, [None; 7]),
                     Some(hit) => self.values(index, ray, &hit),
                 };
+                if wrong.is_some()
+                    && let (Reading::Hit(face), Reading::Hit(faces)) = (stated, &read)
+                    && let Some((verdict, ratios)) = self.unnamed_face(index, ray, (face, faces))
+                {
+                    return Judged { ratios, ..judged(verdict) };
+                }
                 let is_tie = read.hit().is_some_and(|faces| faces.len() > 1);
                 let same = RayVerdict::Same { is_tie };
                 Judged { ratios, ..judged(wrong.map_or(same, RayVerdict::Wrong)) }
             }
         }
+    }
+
+    /// Of a program that names no face, whose values are not those of `face`: the verdict by another face for which all fit. That is one
+    /// that is met at the same t, or one that rounding lets a program take and whose normal is the one that is stated.
+    fn unnamed_face(
+        &self,
+        index: usize,
+        ray: &CastRay,
+        (face, nearest): (FaceId, &[FaceId]),
+    ) -> Option<(RayVerdict, [Option<f64>; 7])> {
+        if self.stated.face.is_some() {
+            return None;
+        }
+        for other in nearest.iter().filter(|other| **other != face) {
+            let Some(hit) = self.exact.values(ray, *other) else { continue };
+            if let (None, ratios) = self.values(index, ray, &hit) {
+                return Some((RayVerdict::Same { is_tie: true }, ratios));
+            }
+        }
+        if self.has_normal_of(index, ray, face)? {
+            return None;
+        }
+        let most = self.exact.lateral_error(ray, self.precision);
+        let beside = AROUND
+            .into_iter()
+            .flat_map(|by| self.exact.first_moved(ray, self.sides, by.map(|part| part * most)));
+        beside.into_iter().filter(|other| self.has_normal_of(index, ray, *other) == Some(true)).find_map(
+            |other| match self.exact.rule(ray, self.sides, Reading::Hit(other), self.precision) {
+                Ruling::Rounding(by) => Some((RayVerdict::Rounding { moved: by.to_array() }, [None; 7])),
+                _ => None,
+            },
+        )
+    }
+
+    /// Whether the normal that is stated of a ray is that of a face, as far as rounding may move it; `None`: none is stated.
+    fn has_normal_of(&self, index: usize, ray: &CastRay, face: FaceId) -> Option<bool> {
+        let stated = self.stated.normal.as_ref()?[index];
+        let [a, b, c] = self.mesh.corners(face);
+        let normal = (b - a).cross(c - a).normalize();
+        // The normal that is formed here may be off by as much as that of another program in double precision.
+        let own = normal_error(self.exact, self.mesh, ray, face, Precision::F64);
+        let error = normal_error(self.exact, self.mesh, ray, face, self.precision);
+        let most = own + error + self.stated.stored.of(CastValue::Normal, index);
+        Some((stated - normal).abs().max_element() <= most)
     }
 
     /// Where one array says that a ray hits something, and another that it does not.
@@ -299,19 +353,9 @@ impl Judge<'_> {
         // What the ray meets beyond its ends, and what rays around it do.
         let beyond = self.exact.all(&endless(ray), self.sides).into_iter().flat_map(|group| group.faces);
         let most = self.exact.lateral_error(ray, self.precision);
-        let round = [
-            [1.0, 0.0],
-            [0.0, 1.0],
-            [-1.0, 0.0],
-            [0.0, -1.0],
-            [1.0, 1.0],
-            [-1.0, 1.0],
-            [1.0, -1.0],
-            [-1.0, -1.0],
-        ];
-        let beside = round
+        let beside = AROUND
             .into_iter()
-            .flat_map(|by: [f64; 2]| self.exact.first_moved(ray, self.sides, by.map(|part| part * most)));
+            .flat_map(|by| self.exact.first_moved(ray, self.sides, by.map(|part| part * most)));
         let found = beyond.map(|met| met.face).chain(beside).find(|face| self.is_excused(ray, *face));
         let exact = read.clone().map(|faces| faces[0]);
         found.map(Reading::Hit).ok_or(Wrong::Something { exact })

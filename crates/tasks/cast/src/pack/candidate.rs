@@ -64,14 +64,17 @@ pub fn read_candidate(
     let (barycentric, of_barycentric) = vectors("barycentric")?;
     let (cos_incidence, of_cos_incidence) = reader.numbers("cos_incidence", &[])?;
     let (sides, of_side) = reader.numbers("side", &[])?;
-    let side = sides.as_ref().map(|numbers| {
-        let side = |number: &f64| match *number {
-            number if number > 0.0 => Some(Side::Front),
-            number if number < 0.0 => Some(Side::Back),
-            _ => None,
-        };
-        numbers.iter().map(side).collect()
-    });
+    let side = |(ray, number): (usize, &f64)| match *number {
+        1.0 => Ok(Some(Side::Front)),
+        -1.0 => Ok(Some(Side::Back)),
+        number if number == 0.0 || number.is_nan() => Ok(None),
+        number if conventions.means_miss(number, error_of(&of_side, ray)) => Ok(None),
+        number => {
+            let expected = "1 for a front, -1 for a back, 0 or NaN where nothing is hit";
+            Err(reader.fault("side", format!("cell {ray}"), number.to_string(), expected))
+        }
+    };
+    let side = sides.as_ref().map(|numbers| numbers.iter().enumerate().map(side).collect()).transpose()?;
     let stored = StoredErrors {
         t: of_t,
         range: of_range,
@@ -170,6 +173,12 @@ impl Reader<'_> {
                     && !beside.hits_beside_face(ray, means_miss) =>
             {
                 Ok(None)
+            }
+            // Half of the distance to the next number of the type: beyond it, neighbouring faces have the same number.
+            number if error_of(&errors, ray) > 0.5 => {
+                let expected =
+                    "a number that its type tells from its neighbours: store faces as whole numbers";
+                Err(self.fault("face", format!("cell {ray}"), number.to_string(), expected))
             }
             number if number.fract() == 0.0 && (0.0..f64::from(u32::MAX)).contains(&number) => {
                 Ok(Some(FaceId(number as u32)))

@@ -13,6 +13,7 @@ use super::candidate::{CandidateConventions, read_candidate};
 use super::clouds::{BeamQuestion, CloudCase, CloudFacts, is_cloud, of_cloud, read_cloud_of};
 use super::decimals::decimals;
 use super::explain::explain;
+use super::kept_answers::refuse_other_answers;
 use super::lengths::lengths;
 use super::mistakes::OfArrays;
 use super::read::RayPack;
@@ -152,7 +153,7 @@ pub fn check_ray_pack(
         None => None,
         Some(returns) => {
             let answers = cast_with(&exact, &rays.rays, sides, Questions::default(), progress);
-            refuse_other_answers(pack, &rays, &Stated::of(&answers))?;
+            refuse_other_answers(pack, &rays, &answers, (&exact, sides), progress)?;
             refuse_other_counts(pack, &counts, (&exact, &rays.rays, sides), &answers)?;
             let question = BeamQuestion::of(&rays, returns, answers.first);
             refuse_other_returns(pack, &question)?;
@@ -199,7 +200,7 @@ pub fn check_ray_pack(
     let (rays, scan) = match question {
         Some(question) => (asked, Some(question.scan)),
         None => {
-            refuse_other_answers(pack, &rays, &Stated::of(&judged.answers))?;
+            refuse_other_answers(pack, &rays, &judged.answers, (&exact, sides), progress)?;
             refuse_other_counts(pack, &counts, (&exact, &rays.rays, sides), &judged.answers)?;
             (rays, scan)
         }
@@ -358,33 +359,4 @@ fn refuse_other_returns(pack: &Path, question: &BeamQuestion) -> Result<(), File
     }
     let expected = "the returns that `raypencil pack --rays` writes: make the pack again";
     Err(FileError::Array(Fault::new("returns", "others than the exact ones", expected).in_file(&path)))
-}
-
-/// Refuses a pack whose own first hits are not the exact ones: anyone can change an answer and write its digest anew.
-fn refuse_other_answers(pack: &Path, rays: &RayArray, exact: &Stated) -> Result<(), FileError> {
-    let kept = read_candidate(pack, &rays.shape, CandidateConventions::default())?;
-    let bits = |numbers: &Option<Vec<f64>>| -> Option<Vec<u64>> {
-        numbers.as_ref().map(|numbers| numbers.iter().map(|number| number.to_bits()).collect())
-    };
-    let faces = |stated: &Stated| -> Option<Vec<u64>> {
-        let number = |face: &Option<raypencil_scene::FaceId>| face.map_or(u64::MAX, |face| u64::from(face.0));
-        stated.face.as_ref().map(|faces| faces.iter().map(number).collect())
-    };
-    let pairs = [
-        ("face.npy", faces(&kept), faces(exact)),
-        ("t.npy", bits(&kept.t), bits(&exact.t)),
-        ("range.npy", bits(&kept.range), bits(&exact.range)),
-    ];
-    for (name, kept, exact) in pairs {
-        let (Some(kept), Some(exact)) = (kept, exact) else { continue };
-        if let Some(ray) = kept.iter().zip(&exact).position(|(kept, exact)| kept != exact) {
-            let fault = Fault::new(
-                format!("ray {ray}"),
-                "another answer than the exact one",
-                "the answers that `raypencil pack --rays` writes: make the pack again",
-            );
-            return Err(FileError::Array(fault.in_file(&pack.join(name))));
-        }
-    }
-    Ok(())
 }

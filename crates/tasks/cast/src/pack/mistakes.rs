@@ -342,7 +342,13 @@ pub(super) const ABOUT_SENSORS: &[Mistake] = &[
     },
     Mistake {
         words: "-Inf means no hit: declare --miss -inf",
-        undo: |trial| misses_at(trial, f64::NEG_INFINITY, f64::INFINITY),
+        // A program has one number for its misses: one that says +Inf has this one.
+        undo: |trial| {
+            let lengths = [&trial.stated.t, &trial.stated.range].into_iter().flatten();
+            if !lengths.flatten().any(|length| *length == f64::INFINITY) {
+                misses_at(trial, f64::NEG_INFINITY, f64::INFINITY);
+            }
+        },
     },
 ];
 

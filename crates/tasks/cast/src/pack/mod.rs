@@ -15,6 +15,7 @@
 //! arrays      orders, axes and constants for no hit that an array may have
 //! mistakes    what a candidate may do otherwise, in words, and what undoes it
 //! explain     which of these, or which two, explain why a candidate is wrong
+//! kept_answers   whether the answers that a pack keeps are the exact ones
 //! check       a candidate against a pack
 //! report      the check in the form of every check
 //! ```
@@ -25,6 +26,7 @@ mod check;
 mod clouds;
 mod decimals;
 mod explain;
+mod kept_answers;
 mod lengths;
 mod mistakes;
 mod read;

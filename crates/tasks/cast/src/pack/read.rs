@@ -135,7 +135,10 @@ impl RayPack {
             }
         }
         // The answers too: who takes them for the truth relies on it.
-        for PackFile { path: name, sha256 } in &document.files {
+        for (k, PackFile { path: name, sha256 }) in document.files.iter().enumerate() {
+            if document.files[..k].iter().any(|other| other.path == *name) {
+                return Err(fault(&path, "files", format!("{name} twice"), "each file once"));
+            }
             let is_inside = Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
             if !is_inside {
                 return Err(fault(&path, "files", name.as_str(), "paths below the pack's folder"));

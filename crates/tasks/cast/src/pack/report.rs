@@ -94,7 +94,8 @@ impl RayPackChecked {
         let mut notes = vec![format!("{}.", counts_text(&self.answers))];
         if self.mesh.is_some() && self.rays.rays.len() > MAX_COUNTED {
             notes.push(format!(
-                "How many rays test backs, limits and lengths is the pack's own word: not counted again beyond {} rays.",
+                "How many rays test backs, limits and lengths, and the hits behind the first one, are the pack's own word: not computed again \
+                 beyond {} rays.",
                 count(MAX_COUNTED as u64)
             ));
         }

@@ -1,11 +1,13 @@
 //! Packs of rays: right programs pass, whatever they give and however they store it.
 
+use glam::DVec3;
 use raypencil_cast::{
-    CandidateConventions, Questions, cast, check_ray_pack, rays_from_bytes, write_ray_pack,
+    CandidateConventions, Questions, Stated, cast, check_ray_pack, compare, rays_from_bytes, read_stated,
+    write_ray_pack,
 };
 use raypencil_files::write_npy_numbers;
-use raypencil_referee::ExactCast;
-use raypencil_scene::{Precision, Sides, Silent};
+use raypencil_referee::{CastHit, ExactCast, Rounded};
+use raypencil_scene::{CastRay, Precision, Sides, Silent};
 
 use super::pack_trial::{Folders, VALUES, cube, npy_of, rays, source};
 
@@ -229,4 +231,89 @@ fn a_pack_of_fronts_is_shown_with_answers_of_fronts() {
         assert_eq!(checked.answers.hits().count(), stated.iter().flatten().count());
     }
     assert!(fronts.answers.hits().count() < both.answers.hits().count());
+}
+
+/// The cube's edges and corners lie at exactly one t on two faces and more: each of them is right, also for a program that names none.
+#[test]
+fn at_a_tie_the_values_of_any_face_are_right_without_its_name() {
+    let mesh = cube();
+    let exact = ExactCast::new(&mesh);
+    let rays = rays();
+    let others: Vec<Option<CastHit>> = rays
+        .rays
+        .iter()
+        .map(|ray| {
+            let faces = exact.first(ray, Sides::Both);
+            exact.values(ray, *faces.last()?)
+        })
+        .collect();
+    let ties = rays.rays.iter().filter(|ray| exact.first(ray, Sides::Both).len() > 1).count();
+    assert!(ties > 5, "{ties}");
+    let three = |parts: [Rounded; 3]| parts.map(|part| part.double);
+    let of = |value: &dyn Fn(&CastHit) -> [f64; 3]| -> Vec<DVec3> {
+        others
+            .iter()
+            .map(|hit| hit.as_ref().map_or(DVec3::NAN, |hit| DVec3::from_array(value(hit))))
+            .collect()
+    };
+    let t = others.iter().map(|hit| hit.as_ref().map_or(f64::INFINITY, |hit| hit.t.double)).collect();
+    let stated = Stated {
+        t: Some(t),
+        normal: Some(of(&|hit| three(hit.normal))),
+        barycentric: Some(of(&|hit| three(hit.barycentric))),
+        side: Some(others.iter().map(|hit| hit.as_ref().map(|hit| hit.side)).collect()),
+        ..Stated::default()
+    };
+    let counts =
+        |stated: &Stated| compare(&mesh, &rays.rays, Sides::Both, stated, Precision::F64, &Silent).counts();
+    let found = counts(&stated);
+    assert_eq!((found.wrong, found.ties as usize), (0, ties), "{found:?}");
+    // A normal of no face that is met, and one of a face with the weights of another, are wrong as before.
+    let tied = rays.rays.iter().position(|ray| exact.first(ray, Sides::Both).len() > 1).expect("a tie");
+    let mut tilted = stated.clone();
+    tilted.normal.as_mut().expect("normals")[tied] = DVec3::splat(libm::sqrt(1.0 / 3.0));
+    assert_eq!(counts(&tilted).wrong, 1);
+    let mut mixed = stated.clone();
+    mixed.barycentric.as_mut().expect("weights")[tied] = DVec3::new(0.25, 0.25, 0.5);
+    assert_eq!(counts(&mixed).wrong, 1);
+}
+
+/// A ray beside an edge by less than single precision moves it: the values are those of the face beyond, which is not named.
+#[test]
+fn within_rounding_of_an_edge_the_normal_of_the_other_face_is_right() {
+    let mesh = cube();
+    // It meets the face x = 1 at y = 1 - off.
+    let off = 1e-9;
+    let ray = CastRay::new(DVec3::new(3.0, 3.0 - off, 0.5), DVec3::new(-1.0, -1.0, 0.0));
+    let hits = |normal: DVec3, precision| {
+        let stated = Stated { t: Some(vec![2.0]), normal: Some(vec![normal]), ..Stated::default() };
+        let counts = compare(&mesh, &[ray], Sides::Both, &stated, precision, &Silent).counts();
+        (counts.same, counts.rounding, counts.wrong)
+    };
+    assert_eq!(hits(DVec3::X, Precision::F32), (1, 0, 0));
+    assert_eq!(hits(DVec3::Y, Precision::F32), (0, 1, 0));
+    assert_eq!(hits(DVec3::Y, Precision::F64), (0, 0, 1));
+    assert_eq!(hits(DVec3::Z, Precision::F32), (0, 0, 1));
+    assert_eq!(hits(-DVec3::Y, Precision::F32), (0, 0, 1));
+}
+
+/// Half precision has no odd number beyond 2048, single none beyond 2^24.
+#[test]
+fn faces_of_a_type_that_does_not_tell_them_apart_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let read = |kind: &str, bytes: &[u8]| {
+        std::fs::write(folder.path().join("face.npy"), npy_of(kind, &[1], bytes.to_vec())).unwrap();
+        read_stated(folder.path(), &[1], CandidateConventions::default())
+            .map(|stated| stated.face.unwrap()[0].map(|face| face.0))
+            .map_err(|error| error.to_string())
+    };
+    // 2047 and 2048 are 1023 and 1024 halves of 2^11: sixteen bits 0x67ff and 0x6800; 2050 is 0x6801.
+    assert_eq!(read("<f2", &0x67ff_u16.to_le_bytes()), Ok(Some(2047)));
+    let message = read("<f2", &0x6801_u16.to_le_bytes()).unwrap_err();
+    assert!(message.contains("face.npy: cell 0: 2050; expected a number that its type tells"), "{message}");
+    assert_eq!(read("<f4", &16_777_215_f32.to_le_bytes()), Ok(Some(16_777_215)));
+    assert!(read("<f4", &16_777_218_f32.to_le_bytes()).unwrap_err().contains("16777218"));
+    // What stands for no face is none in each type.
+    assert_eq!(read("<f4", &4_294_967_296_f32.to_le_bytes()), Ok(None));
+    assert_eq!(read("<f8", &4_000_000_001_f64.to_le_bytes()), Ok(Some(4_000_000_001)));
 }

@@ -352,10 +352,32 @@ fn small_errors_are_told_as_what_they_are() {
     let grown = right().without(&["range"]).change("t", |k, t| t + 1e-8 * (1 + k % 7) as f64);
     assert!(grown.check_by(Precision::F32, CandidateConventions::default()).passes());
     assert_eq!(grown.check().why, None);
-    // Errors of the size of rounding, to both sides.
-    let noise = |k: usize| ((k * 7_919) % 1_000) as f64 / 500.0 - 1.0;
+    // Errors of the size of rounding, to both sides. (S. Vigna, splitmix64.c)
+    let noise = |k: usize| {
+        let mixed = (k as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((mixed ^ (mixed >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    };
     let computed = right().without(&["range"]).change("t", |k, t| t * (1.0 + 1e-7 * noise(k)));
     computed.expect_why(&["if arithmetic is of single precision"]);
+    // The same sizes in an order, along the rays or by channels, are no rounding.
+    for period in [150, 16, 2] {
+        let wave = move |k: usize| if k % period < period / 2 { 1.0 } else { -1.0 };
+        let ordered =
+            right().without(&["range"]).change("t", |k, t| t * (1.0 + 1e-7 * wave(k) * noise(k).abs()));
+        assert_eq!(ordered.check().why, None, "period {period}");
+    }
+    // A few wrong numbers of double precision are none of single precision, however small their errors are.
+    for size in [1e-8, 1e-9, 1e-11] {
+        let few =
+            right().without(&["range"]).change("t", |k, t| if k % 71 == 5 { t * (1.0 + size) } else { t });
+        assert!(!few.check().passes());
+        assert_eq!(few.check().why, None, "{size}");
+    }
+    let single =
+        right().without(&["range"]).change("t", |k, t| if k % 71 == 5 { f64::from(t as f32) } else { t });
+    single.expect_why(&["if arithmetic is of single precision"]);
     let finer = right().without(&["range"]).change("t", |k, t| t * (1.0 + 1e-10 * noise(k)));
     assert_eq!(finer.check().why, None);
 }

@@ -112,7 +112,7 @@ fn a_number_for_a_miss_is_one_in_each_array_and_means_nothing_else() {
     }
     write_npy_numbers(folder.path().join("face.npy"), &[5], &[0.0, -7.0, -1.0, 4_294_967_295.0, 1.0])
         .unwrap();
-    write_npy_numbers(folder.path().join("side.npy"), &[5], &[1.0, -1.0, 0.0, 2.0, -0.5]).unwrap();
+    write_npy_numbers(folder.path().join("side.npy"), &[5], &[1.0, -1.0, 0.0, 1.0, -1.0]).unwrap();
     let conventions = CandidateConventions { miss: Some(-7.0), ..CandidateConventions::default() };
     let stated = read_stated(folder.path(), &[5], conventions).unwrap();
     let (inf, near) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -310,6 +310,62 @@ fn every_digit_of_a_pack_s_digests_and_every_one_of_its_first_hits_counts() {
         );
         std::fs::write(&file, before).unwrap();
     }
+    std::fs::write(&listing, &clean).unwrap();
+    assert!(check().unwrap());
+}
+
+/// Each number of each array that a pack keeps of its answers, and a file that is listed twice.
+#[test]
+fn every_answer_that_a_pack_keeps_has_to_be_the_exact_one() {
+    let folder = tempfile::tempdir().unwrap();
+    write_ray_pack(folder.path(), (&square(), &rays(), Sides::Both), &source(), &Silent).unwrap();
+    let listing = folder.path().join("raypack.json");
+    let clean = std::fs::read_to_string(&listing).unwrap();
+    let document: serde_json::Value = serde_json::from_str(&clean).unwrap();
+    let check = || {
+        let conventions = CandidateConventions::default();
+        let checked = check_ray_pack(folder.path(), folder.path(), Precision::F64, conventions, &Silent);
+        checked.map(|checked| checked.passes()).map_err(|error| error.to_string())
+    };
+    let (mut changed, mut excused) = (0, 0);
+    for listed in document["files"].as_array().unwrap() {
+        let name = listed["path"].as_str().unwrap();
+        let question = ["vertices.npy", "faces.npy", "rays.npy"].contains(&name);
+        let Some(array) = name.strip_suffix(".npy").filter(|_| !question) else { continue };
+        let file = folder.path().join(name);
+        let before = std::fs::read(&file).unwrap();
+        let (shape, values) = numbers(folder.path(), array);
+        for at in 0..values.len() {
+            let mut others = values.clone();
+            let margin = array.starts_with("margin");
+            others[at] = match values[at] {
+                // An interval may be wider or narrower, but must hold what is true.
+                value if margin && at % 2 == 0 => 4.0 * value + 1.0,
+                value if margin => 0.25 * value,
+                value if value.is_finite() => value + 1.0,
+                _ => 1.0,
+            };
+            write_npy_numbers(&file, &shape, &others).unwrap();
+            let (_, new) = raypencil_files::file_sha256_hex(&file).unwrap();
+            std::fs::write(&listing, clean.replace(listed["sha256"].as_str().unwrap(), &new)).unwrap();
+            changed += 1;
+            match check() {
+                // A quarter of 0, or of an infinite margin, still meets the interval.
+                Ok(passes) => {
+                    assert!(passes && margin, "{array} {at}: {} to {}", values[at], others[at]);
+                    excused += 1;
+                }
+                Err(message) => assert!(message.contains(name), "{array} {at}: {message}"),
+            }
+            std::fs::write(&file, &before).unwrap();
+        }
+    }
+    assert!(changed > 150 && excused * 20 < changed, "{changed} changed, {excused} excused");
+    let mut twice = document.clone();
+    let files = twice["files"].as_array_mut().unwrap();
+    files.push(files[0].clone());
+    std::fs::write(&listing, twice.to_string()).unwrap();
+    assert!(check().unwrap_err().contains("twice; expected each file once"));
     std::fs::write(&listing, &clean).unwrap();
     assert!(check().unwrap());
 }

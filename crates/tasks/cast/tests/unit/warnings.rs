@@ -61,7 +61,7 @@ fn limits_that_end_before_the_mesh_are_told_with_their_numbers() {
         "none of the 3,000 rays",
         "3000 of 3000",
         "the nearest at 2000 where the limit is 100",
-        "--scale 0.001",
+        "is the mesh in millimetres (--scale 0.001)? 1287 of 3000 would hit then.",
     ];
     assert_one(found(&cube(2000.0, true), &rays, Sides::Both, false), WarningCode::NoHits, &words);
     // Of more rays some are tried.
@@ -75,6 +75,29 @@ fn limits_that_end_before_the_mesh_are_told_with_their_numbers() {
         WarningCode::NoHits,
         &["the nearest at 4.00, before the 9.00 from which its hits count (t_min)."],
     );
+}
+
+/// A question about a unit or an axis that lets no ray hit would lead nowhere.
+#[test]
+fn another_unit_or_axis_is_asked_about_only_where_it_lets_rays_hit() {
+    // The floor stays as far below if it is made smaller.
+    let far = [CastRay { t_max: 1.0, ..ray([5.0, 5.0, 2.0], [0.0, 0.0, -1.0]) }];
+    let below = found(&ground(30.0, [0, 1]), &far, Sides::Both, false);
+    assert!(below[0].1.ends_with("the nearest at 2.00 where the limit is 1.00."), "{below:?}");
+    // With y up, the floor is x and z, and z of its file runs to -y.
+    let down = |at: [f64; 3]| [ray(at, [0.0, 0.0, -1.0])];
+    let words = ["however far they reach", "is y up in the mesh's file (--up y)? 1 of 1 would hit then."];
+    let y_up = ground(30.0, [2, 0]);
+    assert_one(found(&y_up, &down([5.0, -5.0, 2.0]), Sides::Both, false), WarningCode::NoHits, &words);
+    let beside = found(&y_up, &down([5.0, 5.0, 2.0]), Sides::Both, false);
+    assert!(beside[0].1.ends_with("(5.00, 5.00, 2.00)."), "{beside:?}");
+    // Of ten rays one is enough, of eleven it is not.
+    let wide = cube(2000.0, true);
+    let inside = |reach: f64| CastRay { t_max: reach, ..ray([0.0; 3], [1.0, 0.0, 0.0]) };
+    let of = |count: usize| [vec![inside(100.0)], vec![inside(1.0); count - 1]].concat();
+    assert!(found(&wide, &of(10), Sides::Both, false)[0].1.ends_with("1 of 10 would hit then."));
+    assert!(found(&wide, &of(11), Sides::Both, false)[0].1.ends_with("."), "nothing is asked");
+    assert!(!found(&wide, &of(11), Sides::Both, false)[0].1.contains('?'));
 }
 
 #[test]
@@ -184,7 +207,7 @@ fn rays_in_coordinates_of_the_map_are_told_where_the_origin_lies() {
     ];
     assert_one(found_in_scene(&floor, &in_map, Sides::Both), WarningCode::RaysInMap, &words);
     // Of a mesh file nothing is subtracted.
-    assert_one(found(&floor, &in_map, Sides::Both, false), WarningCode::NoHits, &["(--scale, --up)"]);
+    assert_one(found(&floor, &in_map, Sides::Both, false), WarningCode::NoHits, &["however far they reach"]);
     // With the same limits and sides: neither would hit.
     let short = [CastRay { t_max: 1.0, ..in_map[0] }];
     let [(code, sentence)] = found_in_scene(&floor, &short, Sides::Both).try_into().unwrap();
@@ -193,8 +216,7 @@ fn rays_in_coordinates_of_the_map_are_told_where_the_origin_lies() {
     let [(code, sentence)] = found_in_scene(&floor, &from_below, Sides::Fronts).try_into().unwrap();
     assert_eq!(code, WarningCode::NoHits, "{sentence}");
     // What the remedy says of a scene are the keys of its file.
-    assert!(sentence.contains("(terrain.scale, terrain.up)"), "{sentence}");
-    let far = [CastRay { t_max: 1.0, ..down([5.0, 5.0, 1500.0]) }];
-    let words = ["--set terrain.scale=0.001"];
-    assert_one(found_in_scene(&floor, &far, Sides::Both), WarningCode::NoHits, &words);
+    let ahead = [CastRay { t_max: 100.0, ..ray([0.0; 3], [1.0, 0.0, 0.0]) }];
+    let words = ["is the mesh in millimetres (--set terrain.scale=0.001)? 1 of 1 would hit then."];
+    assert_one(found_in_scene(&cube(2000.0, true), &ahead, Sides::Both), WarningCode::NoHits, &words);
 }
