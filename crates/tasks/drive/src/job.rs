@@ -13,7 +13,7 @@ use raypencil_survey::Warning;
 use crate::background::Background;
 use crate::beam_columns::with_columns;
 use crate::error::{DriveError, MAX_FRAMES};
-use crate::warnings::{beams_out_of_order, blind_threshold};
+use crate::warnings::{beams_out_of_order, blind_threshold, sectors_far_apart};
 
 /// The renderer that makes every approximation of the paper.
 const PAPERS_RENDERER: &str = "scanline-paper";
@@ -181,6 +181,7 @@ impl DriveJob {
         warnings.extend(beams_out_of_order(&plan));
         notes.extend(drive.optics.speckle.map(|speckle| speckle_note(&speckle, &plan.rig.camera.sensor)));
         plan.validate("drive").map_err(in_keys)?;
+        warnings.extend(sectors_far_apart(&plan));
         // A scene's vehicle may lean, for its own maps; that of a drive stands on its wheels.
         if loaded.has_vehicle && loaded.vehicle.rotate(DVec3::Z).z < 1.0 - 1e-12 {
             notes.push(

@@ -6,6 +6,8 @@ use raypencil_rover::{DrivePlan, ExposureMode, OnVehicle, StripeExtractor};
 use raypencil_scene::{Mesh, Pose, Scene, SceneError};
 use raypencil_survey::{TerrainShape, Warning, WarningCode, lies_on_its_side, warnings};
 
+use crate::maps::obstacle_grid::tested_within;
+
 /// Warns if beams are lit together and a beam is not steeper than the next one. Stripes of one image are told apart by
 /// their order: the lowest is taken for that of beam 0, the steepest.
 pub(crate) fn beams_out_of_order(plan: &DrivePlan) -> Option<Warning> {
@@ -18,6 +20,29 @@ pub(crate) fn beams_out_of_order(plan: &DrivePlan) -> Option<Warning> {
         );
         Warning::of_scene(WarningCode::BeamsOutOfOrder, sentence)
     })
+}
+
+/// Warns if tested places are so far apart that ground between them meets no wheel: neighbouring sectors at their last radius,
+/// or two radii of a sector.
+pub(crate) fn sectors_far_apart(plan: &DrivePlan) -> Option<Warning> {
+    let (grid, [ahead, aside]) = (&plan.grid, tested_within(&plan.vehicle).map(|half| 2.0 * half));
+    let between = 2.0 * grid.half_angle / f64::from(grid.sectors.max(2) - 1);
+    let last = grid.radius(grid.radii() - 1);
+    // Half a turn apart or more they could not be farther.
+    let apart = 2.0 * last * libm::sin(0.5 * between.min(std::f64::consts::PI));
+    let what = if grid.sectors > 1 && apart > aside {
+        format!(
+            "neighbouring sectors are {apart:.2} m apart at {last:.2} m, and a wheel is {aside:.2} m wide"
+        )
+    } else if grid.radii() > 1 && grid.step > ahead {
+        format!("the radii of a sector are {:.2} m apart, and a wheel is {ahead:.2} m long", grid.step)
+    } else {
+        return None;
+    };
+    let sentence = format!(
+        "{what}: nothing is tested between. The map for Nav2 has it unknown, but the vectors of the navigator map cross it."
+    );
+    Some(Warning::of_scene(WarningCode::SectorsFarApart, sentence))
 }
 
 /// Warns that the default threshold does not account for `ignored`: light or electronics that the file changes.
@@ -130,6 +155,28 @@ mod tests {
 
     use super::*;
     use crate::common::{FLAT, SHORT, job};
+
+    #[test]
+    fn sectors_and_radii_too_far_apart_for_a_wheel_are_told() {
+        let plan = job(FLAT, SHORT).plan;
+        let said = |sectors, half_angle: f64, step| {
+            let grid = raypencil_rover::RadialGrid { sectors, half_angle, step, ..plan.grid };
+            let plan = DrivePlan { grid, ..plan.clone() };
+            sectors_far_apart(&plan).map(|warning| warning.to_string())
+        };
+        let half = 30.0_f64.to_radians();
+        assert_eq!((said(31, half, 0.1), said(1, half, 0.1)), (None, None));
+        // 4.8 m * 2 sin 15 degrees = 2.485 m; 0.25 m is met between 21 and 22 sectors (0.251 and 0.239 m).
+        let far = said(3, half, 0.1).unwrap();
+        assert!(far.contains("are 2.48 m apart at 4.80 m, and a wheel is 0.25 m wide: nothing"), "{far}");
+        assert_eq!([21, 22].map(|sectors| said(sectors, half, 0.1).is_some()), [true, false]);
+        // Two sectors to the left and right of the way back are apart by what lies ahead.
+        assert!(said(2, 3.0, 0.1).unwrap().contains("are 9.60 m apart"));
+        // Radii: 0.7 m is as long as a wheel.
+        assert_eq!(said(31, half, 0.7), None);
+        let steps = said(31, half, 0.75).unwrap();
+        assert!(steps.contains("radii of a sector are 0.75 m apart, and a wheel is 0.70 m long"), "{steps}");
+    }
 
     #[test]
     fn a_start_steeper_than_the_vehicle_may_stand_is_told() {

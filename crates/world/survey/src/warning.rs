@@ -39,6 +39,8 @@ pub enum WarningCode {
     BlindThreshold,
     /// A drive's beams are lit together and not ordered from steep to flat.
     BeamsOutOfOrder,
+    /// Sectors or radii of a drive's obstacle maps are so far apart that ground between them is not tested.
+    SectorsFarApart,
     /// A drive has measured no point of the ground.
     NothingMeasured,
     /// Edges of stripes were given for images that the drive did not take.
@@ -61,7 +63,7 @@ pub enum WarningCode {
 
 impl WarningCode {
     /// All codes.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::NoHits,
         Self::FewHits,
         Self::BacksFirst,
@@ -74,6 +76,7 @@ impl WarningCode {
         Self::StripeHasGaps,
         Self::BlindThreshold,
         Self::BeamsOutOfOrder,
+        Self::SectorsFarApart,
         Self::NothingMeasured,
         Self::StripesLeftOver,
         Self::StartTooSteep,
@@ -100,6 +103,7 @@ impl WarningCode {
             Self::StripeHasGaps => "stripe_has_gaps",
             Self::BlindThreshold => "blind_threshold",
             Self::BeamsOutOfOrder => "beams_out_of_order",
+            Self::SectorsFarApart => "sectors_far_apart",
             Self::NothingMeasured => "nothing_measured",
             Self::StripesLeftOver => "stripes_left_over",
             Self::StartTooSteep => "start_too_steep",

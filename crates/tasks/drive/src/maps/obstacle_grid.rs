@@ -10,7 +10,8 @@ use crate::maps::occupancy::{Occupancy, OccupancyGrid};
 /// `global_from_vehicle` is the pose from which `obstacles` were extracted.
 ///
 /// A cell belongs to the nearest sector. It is free before the sector's end, occupied at an end that is an obstacle,
-/// and unknown elsewhere. Cells under the vehicle are free.
+/// and unknown elsewhere. Cells under the vehicle are free. A cell that is too far from all tested places is unknown
+/// ([`tested_within`]).
 ///
 /// ```
 /// use glam::DVec2;
@@ -45,6 +46,7 @@ pub fn occupancy_grid(
     let heading = libm::atan2(forward.y, forward.x);
     // CHOICE: three quarters of a step to either side of a sector's end, so that the occupied cells touch one another.
     let reach = 0.75 * grid.step.max(spacing);
+    let [ahead, aside] = tested_within(vehicle);
     let cell = |place: DVec2| {
         let offset = place - obstacles.centre;
         if vehicle.covers(vehicle_from_global.rotate(offset.extend(0.0)).truncate()) {
@@ -55,10 +57,16 @@ pub fn occupancy_grid(
         };
         let end = &obstacles.sectors[sector];
         let radius = offset.length();
+        let (sin, cos) = libm::sincos(end.direction);
+        let steps = ((radius - grid.first) / grid.step).round().clamp(0.0, f64::from(grid.radii() - 1));
+        let from_tested = (radius - grid.radius(steps as u32)).abs();
         match end.label {
             // Nothing was tested before the first radius of the grid.
             _ if radius < grid.first - 0.5 * grid.step => Occupancy::Unknown,
+            // Nor between two sectors that are far apart, or two radii.
+            _ if DVec2::new(cos, sin).perp_dot(offset).abs() > aside => Occupancy::Unknown,
             Label::Obstacle if (radius - end.radius).abs() <= reach => Occupancy::Occupied,
+            _ if from_tested > ahead => Occupancy::Unknown,
             Label::Visibility if radius <= end.radius + 0.5 * grid.step => Occupancy::Free,
             _ if radius < end.radius - 0.5 * grid.step => Occupancy::Free,
             _ => Occupancy::Unknown,
@@ -71,6 +79,14 @@ pub fn occupancy_grid(
         origin: (first - DVec2::splat(0.5 * spacing)).to_array(),
         cells: map.points().map(|point| cell(map.place(point))).collect(),
     }
+}
+
+/// How far from a tested place a cell may be, ahead and aside, metres: half of a wheel's length and of its width.
+///
+/// CHOICE: a place speaks for the ground that its wheels stood on. Between two tested places that are farther apart than a
+/// wheel is long or wide, a strip of ground is left that no wheel was tested on: a post there meets none of them.
+pub(crate) fn tested_within(vehicle: &Vehicle) -> [f64; 2] {
+    [vehicle.wheel_radius, 0.5 * vehicle.wheel_width]
 }
 
 /// Index of the sector nearest to an angle from the heading, radians. `None` if the angle is outside the fan.
@@ -119,5 +135,52 @@ mod tests {
             |x: f64, y: f64| cells.cells[(((y + 10.05) / 0.1) as usize) * 201 + ((x + 10.05) / 0.1) as usize];
         assert_eq!((at(0.0, 0.0), at(1.5, 0.0)), (Occupancy::Free, Occupancy::Unknown));
         assert_eq!((at(2.5, 0.0), at(3.0, 0.0)), (Occupancy::Free, Occupancy::Occupied));
+    }
+
+    /// Cells of level ground with a wall at x = `wall`, metres, for a changed grid: the one at a place.
+    fn before_a_wall(wall: f64, change: impl Fn(RadialGrid) -> RadialGrid) -> impl Fn(f64, f64) -> Occupancy {
+        let mut map = ElevationMap::new(MapSize::default(), DVec2::ZERO);
+        for point in map.points() {
+            map.set_proximity(point, if map.place(point).x > wall { 1.0 } else { 0.0 });
+        }
+        let vehicle = Vehicle::default();
+        let rules = TraversabilityRules::as_printed(&vehicle);
+        let grid = change(RadialGrid::for_vehicle(&vehicle));
+        let obstacles = ObstacleMap::extract(&map, &vehicle, &rules, &grid, &Pose::IDENTITY);
+        let cells = occupancy_grid(&map, &obstacles, &grid, &vehicle, &Pose::IDENTITY).cells;
+        move |x, y| cells[(((y + 10.05) / 0.1) as usize) * 201 + ((x + 10.05) / 0.1) as usize]
+    }
+
+    #[test]
+    fn cells_between_sectors_that_are_far_apart_are_unknown() {
+        use Occupancy::{Free, Occupied, Unknown};
+        // Sectors at -30, 0 and 30 degrees. A wheel is 0.25 m wide: cells within 0.125 m of a sector's line were tested.
+        let at = before_a_wall(2.95, |grid| RadialGrid { sectors: 3, ..grid });
+        assert_eq!([0.0, 0.1, 0.2, 0.5, -0.2].map(|y| at(2.0, y)), [Free, Free, Unknown, Unknown, Unknown]);
+        // The left sector's line is at y = 1.155 m there. 0.1 m along y are 0.087 m to its side.
+        assert_eq!([1.0, 1.1, 1.2, 1.3, 1.4].map(|y| at(2.0, y)), [Unknown, Free, Free, Unknown, Unknown]);
+        // Nor does anybody know where between two sectors an obstacle goes on.
+        assert_eq!([0.0, 0.1, 0.2, 0.5].map(|y| at(3.0, y)), [Occupied, Occupied, Unknown, Unknown]);
+        // A sector alone has 0.05 rad to either side: 0.2 m at 4 m.
+        let one = before_a_wall(20.0, |grid| RadialGrid { sectors: 1, ..grid });
+        assert_eq!([0.0, 0.1, 0.2].map(|y| one(4.0, y)), [Free, Free, Unknown]);
+        // Sectors 2 degrees apart leave no strip: a cell is at most 4.8 m * sin 1 degree = 0.084 m beside one.
+        let all = before_a_wall(20.0, |grid| grid);
+        for (n, m) in (11..=48).flat_map(|n| (0..=n / 2).map(move |m| (n, m))) {
+            let (x, y) = (0.1 * f64::from(n), 0.1 * f64::from(m));
+            assert!(libm::hypot(x, y) > 4.8 || all(x, y) == Free, "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn cells_between_radii_that_are_far_apart_are_unknown() {
+        use Occupancy::{Free, Occupied, Unknown};
+        // Radii of 0.7, 1.7, 2.7 and 3.7 m, where the front axle is on the wall. A wheel reaches 0.35 m ahead and behind.
+        let at = before_a_wall(2.95, |grid| RadialGrid { step: 1.0, ..grid });
+        let ahead = [1.7, 2.0, 2.1, 2.2, 2.3, 2.4, 2.7, 3.0].map(|x| at(x, 0.0));
+        assert_eq!(ahead, [Free, Free, Unknown, Unknown, Unknown, Free, Free, Occupied]);
+        // Half a step beyond the last radius is more than a wheel reaches: 4.7 m.
+        let clear = before_a_wall(20.0, |grid| RadialGrid { step: 1.0, ..grid });
+        assert_eq!([4.7, 5.0, 5.1].map(|x| clear(x, 0.0)), [Free, Free, Unknown]);
     }
 }
