@@ -11,7 +11,8 @@ import pathlib
 import sys
 
 COUNTS = ["sectors", "with_obstacle", "found", "passed", "missed.by_errors", "missed.by_spacing", "missed.by_rule",
-          "not_seen.hidden", "not_seen.not_swept", "not_seen.outside", "false_obstacle", "clear_way_m",
+          "not_seen.hidden", "not_seen.in_part", "not_seen.not_swept", "not_seen.outside", "false_obstacle",
+          "clear_way_m",
           "upper_bound.found", "upper_bound.passed", "upper_bound.false_obstacle", "upper_bound.clear_way_m"]
 # Largest shares that were aimed at: passed, of the obstacles that were found or passed; false, of all sectors.
 GOALS = {"none": (0.01, 0.02), "camera": (0.02, 0.04), "camera and sensors": (0.02, 0.04)}

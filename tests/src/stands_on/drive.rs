@@ -186,9 +186,9 @@ fn add_truth(digest: &mut Fingerprint, truth: &SectorTruth) {
     } = *truth;
     let SectorTruth { clear, off_ground, clear_mm, .. } = *truth;
     let Missed { by_errors, by_spacing, by_rule } = missed;
-    let NotFound { hidden, not_swept, outside } = not_found;
+    let NotFound { hidden, in_part, not_swept, outside } = not_found;
     digest.counts([maps, sectors, with_obstacle, found, by_errors, by_spacing, by_rule]);
-    digest.counts([hidden, not_swept, outside, false_obstacle, false_before]);
+    digest.counts([hidden, not_swept + in_part, outside, false_obstacle, false_before]);
     digest.counts([unknown_not_measured, unknown_may_hide, unknown_near_limit, unknown_beyond_map]);
     digest.counts([clear, off_ground, clear_mm]);
 }

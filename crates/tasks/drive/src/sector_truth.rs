@@ -21,6 +21,8 @@ use crate::true_rules::TrueRules;
 pub struct NotFound {
     /// Stripes passed over it, but other ground hid it.
     pub hidden: u64,
+    /// Stripes met its cell, but only lower down: on their way up they had not come to its top.
+    pub in_part: u64,
     /// No stripe had come to it yet.
     pub not_swept: u64,
     /// It lies beside the stripes or outside the camera's view.
@@ -30,7 +32,7 @@ pub struct NotFound {
 impl NotFound {
     /// Number of all.
     pub fn all(self) -> u64 {
-        self.hidden + self.not_swept + self.outside
+        self.hidden + self.in_part + self.not_swept + self.outside
     }
 }
 
@@ -94,7 +96,7 @@ pub struct SectorTruth {
     pub found: u64,
     /// Of these: called clear beyond the true obstacle by more than one step, though stripes swept it and nothing hid it.
     pub missed: Missed,
-    /// Of these: called clear beyond it likewise, but it could not be seen.
+    /// Of these: called clear beyond it likewise, but no stripe lit what stops the vehicle.
     pub not_found: NotFound,
     /// Sectors called an obstacle more than one step before any true one, or without any.
     pub false_obstacle: u64,
@@ -214,6 +216,7 @@ impl SectorTruth {
             let swept = obstruction.points.iter().map(|&point| ground.swept.at(point)).max();
             match swept.unwrap_or(Swept::Never) {
                 Swept::Never => self.not_found.not_swept += 1,
+                Swept::Lower => self.not_found.in_part += 1,
                 Swept::Outside => self.not_found.outside += 1,
                 Swept::Hidden => self.not_found.hidden += 1,
                 Swept::Seen => {
@@ -295,18 +298,21 @@ impl SectorTruth {
                 count(self.clear),
             ),
             format!(
-                "{} pass a true obstacle: {} miss one that stripes swept, {} pass one that could not be seen",
+                "{} pass a true obstacle: {} miss one that stripes swept, {} pass one measured in part, {} pass one that \
+                 could not be seen",
                 count(self.passed()),
                 count(missed.all()),
-                count(not_found.all()),
+                count(not_found.in_part),
+                count(not_found.all() - not_found.in_part),
             ),
         ];
         if self.passed() > 0 {
             sentences.push(format!(
-                "missed by errors {}, spacing {}, rule {}; not seen: hidden {}, not swept {}, outside {}",
+                "missed by errors {}, spacing {}, rule {}; measured in part {}; not seen: hidden {}, not swept {}, outside {}",
                 count(missed.by_errors),
                 count(missed.by_spacing),
                 count(missed.by_rule),
+                count(not_found.in_part),
                 count(not_found.hidden),
                 count(not_found.not_swept),
                 count(not_found.outside),

@@ -99,6 +99,7 @@ fn truth(truth: &SectorTruth, bound: &SectorTruth) -> Value {
         },
         "not_seen": {
             "hidden": truth.not_found.hidden,
+            "in_part": truth.not_found.in_part,
             "not_swept": truth.not_found.not_swept,
             "outside": truth.not_found.outside,
         },

@@ -19,6 +19,9 @@ pub(crate) enum Swept {
     Outside,
     /// No sheet passed over it.
     Never,
+    /// Its cell was lit and seen, but only lower down: a stripe on its way up has not come to its top yet. Of several points of an
+    /// obstacle this one is told: it was measured, and too low.
+    Lower,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -168,7 +171,8 @@ impl SweptGround {
             }
             if (i, j) == (0, 0) {
                 own = match cell {
-                    // A stripe on its way up has not come to the top yet.
+                    Cell { seen: Some((_, high)), .. } if *high < point.z => Swept::Lower,
+                    // A stripe on its way down has not come to the foot yet.
                     Cell { seen: Some(_), .. } => Swept::Never,
                     Cell { passed: true, .. } => Swept::Hidden,
                     Cell { passed_outside: true, .. } => Swept::Outside,

@@ -41,7 +41,7 @@ fn a_row_names_each_count_in_its_column() {
         sectors: 20_000,
         found: 3_985,
         missed: Missed { by_errors: 12, by_spacing: 2, by_rule: 1 },
-        not_found: NotFound { hidden: 3, not_swept: 4, outside: 5 },
+        not_found: NotFound { hidden: 3, in_part: 1, not_swept: 3, outside: 5 },
         false_obstacle: 9,
         unknown_not_measured: 30,
         unknown_beyond_map: 7,

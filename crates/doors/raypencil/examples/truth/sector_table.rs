@@ -22,7 +22,8 @@ pub fn row(truth: &SectorTruth, bound: &SectorTruth, drive: &str, settings: &str
         count(missed.by_rule),
         percent(missed.all(), truth.found + missed.all()),
         count(not_found.hidden),
-        count(not_found.not_swept),
+        // No stripe has come to the top of what was met lower down.
+        count(not_found.not_swept + not_found.in_part),
         count(not_found.outside),
         count(truth.false_obstacle),
         percent(truth.false_obstacle, truth.sectors),

@@ -47,16 +47,21 @@ fn end(radius: f64, label: Label) -> SectorEnd {
 
 /// Counts of one sector with this end, by a vehicle at (x, 0). `is_seen`: stripes swept all of the ground.
 fn counted(x: f64, radius: f64, label: Label, is_seen: bool) -> SectorTruth {
+    counted_up_to(x, radius, label, if is_seen { f64::INFINITY } else { f64::NEG_INFINITY })
+}
+
+/// The same, with stripes that swept all of the ground up to this height and climbed the wall so far.
+fn counted_up_to(x: f64, radius: f64, label: Label, top: f64) -> SectorTruth {
     let (mesh, plan) = (step(), plan());
     let (faces, heights) = (GroundFaces::new(&mesh), HeightIndex::new(&mesh));
     let mut swept = SweptGround::new(plan.map, DVec2::ZERO);
     swept.recentre(DVec2::new(x, 0.0), &heights);
-    if is_seen {
+    if top > f64::NEG_INFINITY {
         for i in -20..90 {
             for j in -20..=20 {
                 let place = DVec2::new(0.1 * f64::from(i), 0.1 * f64::from(j));
                 let z = heights.height_at(place.x, place.y);
-                swept.see(place.extend(z.unwrap_or(0.0)));
+                swept.see(place.extend(z.unwrap_or(0.0).min(top)));
             }
         }
     }
@@ -126,6 +131,14 @@ fn clear_beyond_it_by_more_than_a_step_is_missed_if_stripes_swept_it() {
     assert!(said[1].starts_with("1 pass a true obstacle: 0 miss one"), "{said:?}");
     assert!(said[2].ends_with("not seen: hidden 0, not swept 1, outside 0"), "{said:?}");
     assert_eq!(within.sentences().len(), 2);
+    // Stripes lit the lower 0.3 m of its 0.75 m: they met it, and not its top, where the wheels touch it. Nothing hid it.
+    let in_part = counted_up_to(0.0, 4.8, Label::Visibility, 0.3);
+    assert_eq!(in_part.not_found, NotFound { in_part: 1, ..NotFound::default() });
+    assert_eq!((in_part.missed.all(), in_part.passed()), (0, 1));
+    let said = in_part.sentences();
+    let words = "1 pass a true obstacle: 0 miss one that stripes swept, 1 pass one measured in part, 0 pass one that could not be seen";
+    assert_eq!(said[1], words);
+    assert!(said[2].ends_with("measured in part 1; not seen: hidden 0, not swept 0, outside 0"), "{said:?}");
     // Clear up to 2.6 m truly; the bound's sentence has all its counts.
     assert_eq!(unseen.mean_clear_way(), 2.6);
     let bound = unseen.sentence_of_bound();
@@ -213,10 +226,13 @@ fn a_wall_is_seen_only_as_high_as_a_stripe_came() {
     let top = DVec3::new(3.0, 0.0, 0.5);
     assert_eq!(swept.at(top), Swept::Never);
     // Half a spacing below the top counts, more does not.
-    for (z, expected) in [(0.2, Swept::Never), (0.44, Swept::Never), (0.46, Swept::Seen)] {
+    for (z, expected) in [(0.2, Swept::Lower), (0.44, Swept::Lower), (0.46, Swept::Seen)] {
         swept.see(DVec3::new(2.99, 0.0, z));
         assert_eq!(swept.at(top), expected, "{z}");
     }
+    // The foot of what was seen only higher up is not swept yet, either.
+    swept.see(DVec3::new(6.0, 0.0, 0.75));
+    assert_eq!(swept.at(DVec3::new(6.0, 0.0, 0.5)), Swept::Never);
     // What was swept before a scan counts no more.
     swept.clear();
     assert_eq!(swept.at(top), Swept::Never);
