@@ -9,7 +9,8 @@ use raypencil_rover::{
     RadialGrid, Rig, SheetPlane, StartRule, Sweep, TraversabilityRules, TraversabilityTest, Triangulation,
     Vehicle,
 };
-use raypencil_scene::{Mesh, Pose};
+use raypencil_scene::{Material, Mesh, Pose};
+use raypencil_terrain::Ground;
 
 /// Reading of perfect sensors: the vehicle stands level at (x, 0).
 fn sensed(x: f64) -> LocalisationReading {
@@ -174,4 +175,52 @@ fn a_rock_too_low_to_matter_hides_ground_and_gaps_may_be_crossed() {
     assert_eq!(ridge(0.15), [Label::Unknown, Label::Unknown]);
     // h = 0.06: 0.18 m are hidden, from 4.6 to 4.78: the grid points 4.7 and at most 4.8. A wheel bridges them.
     assert_eq!(ridge(0.06)[1], Label::Visibility);
+}
+
+/// Level ground with a post of 0.1 x 0.1 x 1 m, whose front face is at x = 9 m, in the middle of the way.
+fn post() -> std::sync::Arc<Mesh> {
+    let square = |z: f64, [x0, x1]: [f64; 2], y: f64| {
+        [(x0, -y), (x1, -y), (x1, y), (x0, y)].map(|(x, y)| DVec3::new(x, y, z))
+    };
+    let corners =
+        [square(0.0, [-20.0, 20.0], 20.0), square(0.0, [9.0, 9.1], 0.05), square(1.0, [9.0, 9.1], 0.05)];
+    let mut faces = vec![[0, 1, 2], [0, 2, 3], [8, 9, 10], [8, 10, 11]];
+    for side in 0..4 {
+        let (a, b) = (4 + side, 4 + (side + 1) % 4);
+        faces.extend([[a, b, b + 4], [a, b + 4, a + 4]]);
+    }
+    let materials = vec![Material { name: "ground".into(), reflectivity: 0.25 }];
+    let (vertices, face_materials) = (corners.concat(), vec![0; faces.len()]);
+    std::sync::Arc::new(Ground { vertices, faces, face_materials, materials }.into_mesh().expect("a ground"))
+}
+
+#[test]
+fn a_post_is_as_high_as_its_face_was_lit_until_the_far_stripe_has_climbed_the_clearance() {
+    // The limit that docs/theory/rover.md states. The far sheet starts 2 m up and 0.3 m ahead, 22 degrees down: at the distance D it
+    // stands 2 - (D - 0.3) tan 22 degrees high on the post. That is the clearance of 0.35 m at D = 4.38 m, and with the margin of
+    // two standard errors, 2 cm and more, some 7 cm before it.
+    let (rig, mesh) = (rig(128, 1), post());
+    let mut mapper =
+        Mapper::with_rules(Vehicle::default(), MapSize::default(), MapRules::MENDED, &sensed(0.0), 0.0);
+    mapper.update_from_scan(&sensed(0.0), scan(&rig, &mesh, 0.0), true);
+    let vehicle = Vehicle::default();
+    let (rules, grid) = (TraversabilityRules::for_vehicle(&vehicle), RadialGrid::for_vehicle(&vehicle));
+    let mut passed = Vec::new();
+    for n in 1..=87 {
+        let x = 0.06 * f64::from(n);
+        mapper.update(&sensed(x), frame(&rig, &mesh, x));
+        // The belly of a vehicle with its front axle at the last radius, 4.8 m, is over the post from here on.
+        let distance = 9.0 - x;
+        if distance > 4.75 {
+            continue;
+        }
+        let end = ObstacleMap::extract(mapper.map(), &vehicle, &rules, &grid, &mapper.pose()).sectors[15];
+        if end.radius > distance + 0.15 || end.label == Label::Visibility {
+            passed.push(distance);
+        }
+    }
+    let (first, last) = (passed[0], passed[passed.len() - 1]);
+    // It is passed on 0.3 m of way, one second, and on none nearer.
+    assert!(first > 4.7 && (4.38..4.52).contains(&last), "{passed:?}");
+    assert_eq!(passed.len(), ((first - last) / 0.06).round() as usize + 1, "{passed:?}");
 }
