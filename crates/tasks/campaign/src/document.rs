@@ -278,9 +278,11 @@ fn quantities(merged: &Merged, all: &CampaignTotal<'_>) -> Grid {
     );
     for (quantity, total) in &all.quantities {
         let QuantityTotal { by_class, worst_error, worst_ratio, .. } = total;
-        let value = |worst: &Option<WorstRay<'_>>| {
-            worst.map_or(String::new(), |worst| worst.record.value.map_or("NaN".into(), number))
+        let value = |worst: &Option<WorstRay<'_>>, of_none: &str| {
+            worst.map_or(String::new(), |worst| worst.record.value.map_or(of_none.into(), number))
         };
+        // A record keeps no number that is not finite. Such a ratio counts as infinite; an error may also be none.
+        let [error, ratio] = [value(worst_error, "not finite"), value(worst_ratio, "infinite")];
         let place = worst_ratio.or(*worst_error);
         let [where_, again] =
             place.map_or([const { String::new() }; 2], |WorstRay { record, terrain, part }| {
@@ -294,7 +296,7 @@ fn quantities(merged: &Merged, all: &CampaignTotal<'_>) -> Grid {
         // On a screen only what has an error to tell.
         let room = if worst_error.is_some() && worst_ratio.is_some() { Room::Everywhere } else { Room::Wide };
         let fails = wrong(by_class) > 0;
-        grid.row_with_room(row.chain([value(worst_error), value(worst_ratio), where_, again]), fails, room);
+        grid.row_with_room(row.chain([error, ratio, where_, again]), fails, room);
     }
     grid
 }

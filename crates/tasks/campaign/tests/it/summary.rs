@@ -248,6 +248,21 @@ fn the_hardest_terrain_is_that_of_the_most_wrong_then_rounded_then_tied_rays() {
 }
 
 #[test]
+fn a_worst_value_that_is_no_finite_number_is_told_in_words() {
+    let mut merged = made_up([1000, 0, 0, 0, 0, 0], Vec::new());
+    let quantity = &mut merged.terrains[0].parts[0].quantities[0];
+    quantity.worst_ratio.as_mut().unwrap().value = None;
+    let row = |merged: &Merged| {
+        let screen = campaign_screen(merged);
+        screen.lines().find(|line| line.starts_with("range ")).expect("a row").to_string()
+    };
+    // As `check` has it where nothing was allowed.
+    assert!(row(&merged).contains(" infinite ") && !row(&merged).contains("NaN"), "{}", row(&merged));
+    merged.terrains[0].parts[0].quantities[0].worst_error.as_mut().unwrap().value = None;
+    assert!(row(&merged).contains(" not finite  infinite "), "{}", row(&merged));
+}
+
+#[test]
 fn the_least_and_the_most_faces_are_those_of_any_terrain() {
     let mut merged = made_up([1000, 0, 0, 0, 0, 0], Vec::new());
     merged.terrains.push(TerrainRecord { terrain: 2, ..merged.terrains[0].clone() });
