@@ -430,18 +430,34 @@ fn maybe(reals: Reals<'_>, hits: Hits<'_>, is_length: bool) -> Result<Image<Mayb
     Ok(image)
 }
 
-/// A line of help for pixels outside the image: what would bring all of them into it.
-fn pixels_otherwise(stated: [&Image<u32>; 2], [width, height]: [u32; 2]) -> Option<String> {
-    let pairs = || {
-        stated[0].cells().iter().zip(stated[1].cells()).filter(|(i, j)| (**i, **j) != (u32::MAX, u32::MAX))
+/// A line of help for pixels outside the image: what would bring all of them into it. One wrong pixel shows no rule, and so nothing is
+/// said of it.
+fn pixels_otherwise(stated: [&Image<u32>; 2], size: [u32; 2]) -> Option<String> {
+    let [columns, rows] = stated.map(Image::cells);
+    let pairs = || columns.iter().zip(rows).map(|(i, j)| [*i, *j]).filter(|pair| *pair != [u32::MAX; 2]);
+    let outside = |axis: usize| -> Vec<u32> {
+        pairs().map(|pair| pair[axis]).filter(|one| *one >= size[axis]).collect()
     };
-    if pairs().all(|(i, j)| *j < width && *i < height) {
-        return Some("pixel.I is the column and pixel.J the row: they are exchanged".into());
+    let outside = [outside(0), outside(1)];
+    // From 1 on, all that lies outside has one number, the last; no cell has 0, and some have the first.
+    let is_from_1 = |axis: usize| {
+        let first = pairs().map(|pair| pair[axis]).min();
+        outside[axis].len() > 1 && outside[axis].iter().all(|one| *one == size[axis]) && first == Some(1)
+    };
+    let is_inside = |axis: usize| outside[axis].is_empty();
+    let names = match [0, 1].map(is_from_1) {
+        [true, true] => Some("columns and rows"),
+        [true, false] if is_inside(1) => Some("columns"),
+        [false, true] if is_inside(0) => Some("rows"),
+        _ => None,
+    };
+    if let Some(names) = names {
+        return Some(format!("{names} count from 0, and not from 1"));
     }
-    let from_1 = |one: u32, count: u32| (1..=count).contains(&one);
-    pairs()
-        .all(|(i, j)| from_1(*i, width) && from_1(*j, height))
-        .then(|| "columns and rows count from 0, and not from 1".into())
+    // Exchanged, they reach farther than that.
+    let reaches_farther = outside.iter().any(|outside| outside.iter().any(|one| *one != outside[0]));
+    (reaches_farther && pairs().all(|[i, j]| j < size[0] && i < size[1]))
+        .then(|| "pixel.I is the column and pixel.J the row: they are exchanged".into())
 }
 
 /// A line of help for a map of lengths with negative ones: many of one number may mean "no hit", many numbers are lengths.
@@ -514,4 +530,54 @@ fn flux(Reals { name, channel, image }: Reals<'_>) -> Result<Image<f64>, Recordi
         return Err(Reader::fault((name, channel), Some(cell(image, index)), found, expected));
     }
     Ok(image.clone())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is said of pixels of an image of 4 x 3; the last cell names none.
+    fn said(pairs: &[[u32; 2]]) -> Option<String> {
+        let all = || pairs.iter().copied().chain([[u32::MAX; 2]]);
+        let image = |axis: usize| {
+            Image::from_cells(pairs.len() as u32 + 1, 1, all().map(|pair: [u32; 2]| pair[axis]).collect())
+        };
+        pixels_otherwise([&image(0), &image(1)], [4, 3])
+    }
+
+    #[test]
+    fn pixels_outside_the_image_are_told_what_all_of_them_show() {
+        let all: Vec<[u32; 2]> = (0..4).flat_map(|i| (0..3).map(move |j| [i, j])).collect();
+        let with = |change: fn([u32; 2]) -> [u32; 2]| {
+            let changed: Vec<[u32; 2]> = all.iter().map(|pair| change(*pair)).collect();
+            said(&changed)
+        };
+        let exchanged = Some("pixel.I is the column and pixel.J the row: they are exchanged".to_string());
+        let from_1 = |names: &str| Some(format!("{names} count from 0, and not from 1"));
+        assert_eq!(with(|[i, j]| [i + 1, j + 1]), from_1("columns and rows"));
+        assert_eq!(with(|[i, j]| [i + 1, j]), from_1("columns"));
+        assert_eq!(with(|[i, j]| [i, j + 1]), from_1("rows"));
+        assert_eq!(with(|[i, j]| [i + 9, j]), None);
+        // Only the first three columns are met: rows from 1 would be in the image if they were exchanged.
+        let left: Vec<[u32; 2]> = all.iter().copied().filter(|[i, _]| *i < 3).collect();
+        let from_below: Vec<[u32; 2]> = left.iter().map(|[i, j]| [*i, j + 1]).collect();
+        assert_eq!(said(&from_below), from_1("rows"));
+        // One cell that is wrong, as 2 changed to 3: neither is exchanged, nor do the others count from 1.
+        let mut one = left;
+        one.last_mut().expect("a cell")[1] = 3;
+        assert_eq!(said(&one), None);
+        // An image of 7 x 3, of which the pixels are exchanged.
+        let wide: Vec<[u32; 2]> = (0..7).flat_map(|i| (0..3).map(move |j| [j, i])).collect();
+        let of_wide = |pairs: &[[u32; 2]]| {
+            let image = |axis: usize| {
+                Image::from_cells(pairs.len() as u32, 1, pairs.iter().map(|pair| pair[axis]).collect())
+            };
+            pixels_otherwise([&image(0), &image(1)], [7, 3])
+        };
+        assert_eq!(of_wide(&wide), exchanged);
+        // All but one: that is no exchange.
+        let mut but_one = wide;
+        but_one[0] = [4, 0];
+        assert_eq!(of_wide(&but_one), None);
+    }
 }
