@@ -6,7 +6,7 @@
 use raypencil_files::Storage;
 use raypencil_judge::{Quantity, SensorResult};
 use raypencil_naive::{Clause, ClauseKind, Slack};
-use raypencil_report::{Block, Column, Grid};
+use raypencil_report::{Block, Column, Grid, counted};
 use raypencil_scene::{Precision, SensorId};
 use serde_json::{Value, json};
 
@@ -90,26 +90,47 @@ pub(super) fn sentence(told: &[Told], is_published: bool) -> Option<String> {
     let shift = shift.map(|told| format!("rays that are {} of a cell off", size(told)));
     let bias = of(Slack::ShadowStartsAway).map(|told| format!("a shadow bias of {} of the way", size(told)));
     let common: Vec<String> = shift.into_iter().chain(bias).collect();
-    let blunt = told.iter().take(MAX_TOLD);
-    let blunt: Vec<String> = blunt
-        .map(|told| match told.noticed {
-            None => format!("{}, any size", name(told.slack)),
-            Some(_) => format!("{}, {} {}", name(told.slack), size(told), told.slack.unit().words()),
-        })
-        .collect();
-    let source = if is_published { "" } else { " (by the pack's own word; --verify measures it)" };
-    if told.iter().all(|told| told.noticed.is_none()) {
-        return None;
-    }
-    let known = told.len();
-    let common = match common.as_slice() {
-        [] => "Mistakes".to_string(),
-        some => format!("Mistakes such as {}", some.join(" or ")),
+    let in_words = |told: &Told| match told.noticed {
+        None => format!("{}, any size", name(told.slack)),
+        Some(_) => format!("{}, {} {}", name(told.slack), size(told), told.slack.unit().words()),
     };
-    Some(format!(
-        "{common} would have been noticed{source}. Of {known} kinds of tolerance these are the largest before they are noticed: {}.",
-        blunt.join("; ")
-    ))
+    let listed =
+        |some: &[&Told]| some.iter().take(MAX_TOLD).map(|told| in_words(told)).collect::<Vec<_>>().join("; ");
+    let source = if is_published { "" } else { " (by the pack's own word; --verify measures it)" };
+    let all: Vec<&Told> = told.iter().collect();
+    let noticed: Vec<&Told> = told.iter().filter(|told| told.noticed.is_some()).collect();
+    let largest = "these are the largest before they are noticed";
+    Some(match (common.as_slice(), noticed.len()) {
+        (_, 0) => return None,
+        // A candidate that gives a few channels: what would have been noticed in these.
+        ([], 1) => {
+            format!(
+                "A mistake of one kind would have been noticed{source}, from this size on: {}.",
+                listed(&noticed)
+            )
+        }
+        ([], 2..=MAX_TOLD) => {
+            format!(
+                "Mistakes of {} kinds would have been noticed{source}, from these sizes on: {}.",
+                noticed.len(),
+                listed(&noticed)
+            )
+        }
+        ([], kinds) => {
+            format!(
+                "Mistakes of {kinds} kinds would have been noticed{source}. Of them {largest}: {}.",
+                listed(&noticed)
+            )
+        }
+        (some, _) => {
+            let kinds = counted(told.len() as u64, "kind", "kinds");
+            format!(
+                "Mistakes such as {} would have been noticed{source}. Of {kinds} of tolerance {largest}: {}.",
+                some.join(" or "),
+                listed(&all)
+            )
+        }
+    })
 }
 
 /// The name of a slack for people.
@@ -137,4 +158,51 @@ pub(super) fn to_json(told: &[Told]) -> Value {
     told.iter()
         .map(|Told { slack, noticed }| json!({ "slack": slack.key(), "unit": slack.unit().words(), "noticed": noticed }))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pass_names_what_would_have_been_noticed_by_what_is_given() {
+        let of = |slack, noticed| Told { slack, noticed };
+        let depth = || of(Slack::DepthScaled, Some(2e-14));
+        let said = |told: &[Told]| sentence(told, true);
+        // One channel, as depth.Z alone.
+        assert_eq!(
+            said(&[depth()]).as_deref(),
+            Some(
+                "A mistake of one kind would have been noticed, from this size on: depth scaled, 2e-14 as a share."
+            )
+        );
+        assert_eq!(
+            said(&[of(Slack::RangeScaled, Some(1e-12)), depth()]).as_deref(),
+            Some(
+                "Mistakes of 2 kinds would have been noticed, from these sizes on: range scaled, 1e-12 as a share; \
+                 depth scaled, 2e-14 as a share."
+            )
+        );
+        // What is not noticed at all is none of them.
+        assert_eq!(said(&[of(Slack::RangeScaled, None), depth()]), said(&[depth()]));
+        assert_eq!((said(&[of(Slack::RangeScaled, None)]), said(&[])), (None, None));
+        // Pixels alone.
+        let lands = [Slack::LandsRight, Slack::LandsLeft, Slack::LandsBelow, Slack::LandsAbove];
+        assert_eq!(
+            sentence(&lands.map(|slack| of(slack, Some(1e-9))), false).as_deref(),
+            Some(
+                "Mistakes of 4 kinds would have been noticed (by the pack's own word; --verify measures it). Of them \
+                 these are the largest before they are noticed: lands right, 1e-9 of a pixel; lands left, 1e-9 of a \
+                 pixel; lands below, 1e-9 of a pixel."
+            )
+        );
+        // Faces and ranges show shifted rays, and name them first.
+        let told = said(&[of(Slack::ShiftRight, Some(1e-8)), depth()]).expect("a sentence");
+        assert!(
+            told.starts_with(
+                "Mistakes such as rays that are 1e-8 of a cell off would have been noticed. Of 2 kinds "
+            ),
+            "{told}"
+        );
+    }
 }
