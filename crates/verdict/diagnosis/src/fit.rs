@@ -400,10 +400,10 @@ fn factor(case: Case<'_>, places: &[Place], base: Option<&Correction>) -> Option
             }
         }
         let Some((median, spread)) = middle(&mut ratios, MIN_VALUES_OF_FACTOR) else { continue };
-        let is_one = spread <= MAX_SPREAD_OF_FACTOR * median && (median - 1.0).abs() > spread;
-        // The plainest number within what the ratios differ by.
-        let plain = plainest(median, spread + 4.0 * f64::EPSILON * median);
-        return is_one.then(|| Mistake::FluxFactor(plain).into());
+        // The plainest number within what the ratios differ by. 1 is none: a factor of 1 is no mistake.
+        let uncertainty = spread + 4.0 * f64::EPSILON * median;
+        let is_one = spread <= MAX_SPREAD_OF_FACTOR * median && (median - 1.0).abs() > uncertainty;
+        return is_one.then(|| Mistake::FluxFactor(plainest(median, uncertainty)).into());
     }
     None
 }

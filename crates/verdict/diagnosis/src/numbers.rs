@@ -1,7 +1,7 @@
 //! Numbers that are found from a recording, and the plainest number that says the same.
 
-/// Decimals of a number that is told, at most.
-const MAX_DECIMALS: i32 = 12;
+/// Decimals of a number that is told, at most: as many as a number of double precision that is about 1 has.
+const MAX_DECIMALS: i32 = 16;
 
 /// The number with the fewest decimals that is within `uncertainty` of another.
 pub(crate) fn plainest(number: f64, uncertainty: f64) -> f64 {

@@ -177,7 +177,7 @@ impl fmt::Display for Mistake {
                 f.write_str("the air does not attenuate the light: the scene has an attenuation")
             }
             Self::FluxFactor(factor) => {
-                write!(f, "the flux is {factor:.6} times the true one: a constant factor is wrong")
+                write!(f, "the flux is {} times the true one: a constant factor is wrong", short(*factor))
             }
             Self::SinglePrecision => {
                 f.write_str("the arithmetic is of single precision: declare --arithmetic f32")
@@ -294,10 +294,17 @@ impl fmt::Display for Mistake {
     }
 }
 
-/// A number with at most nine significant digits.
+/// A number with at most fifteen significant digits: one fewer than a double keeps, so that a change of its unit does not show.
+/// A number that was found has few digits already. With fewer than these, 1.0000000000001 would read as 1.
 fn short(number: f64) -> String {
-    let rounded: f64 = format!("{number:.8e}").parse().unwrap_or(number);
+    let rounded: f64 = format!("{number:.14e}").parse().unwrap_or(number);
     format!("{rounded}")
+}
+
+/// A number of a file, as people write it: one that single precision holds has no more digits than that.
+fn constant(number: f64) -> String {
+    let single = number as f32;
+    if f64::from(single) == number { single.to_string() } else { short(number) }
 }
 
 fn metres(number: f64) -> String {
@@ -353,7 +360,7 @@ fn cut(
         };
         return match held {
             Held::NoHit => write!(f, "{what} {} \"no hit\" where something is hit", verb[0]),
-            Held::Constant(number) => write!(f, "{what} {} {} everywhere", verb[1], short(number)),
+            Held::Constant(number) => write!(f, "{what} {} {} everywhere", verb[1], constant(number)),
             Held::Neighbour => write!(f, "{what} {} the {line} beside", verb[2]),
             Held::Anything => write!(f, "{what} {} wrong, and nothing else", verb[3]),
         };
@@ -366,7 +373,7 @@ fn cut(
     };
     match held {
         Held::Constant(number) => {
-            write!(f, "hits {beyond} {} have the length {}", metres(at), metres(number))
+            write!(f, "hits {beyond} {} have the length {} m", metres(at), constant(number))
         }
         _ if by == CutBy::RangeOrDepth => {
             write!(f, "hits {beyond} a range of {}, or a depth that goes with it, are lost", metres(at))

@@ -236,6 +236,27 @@ fn ways_and_units_are_told_truly() {
 }
 
 #[test]
+fn numbers_are_told_with_all_their_digits_and_no_more() {
+    let says = |part: &str, mistake: Mistake| {
+        let words = mistake.to_string();
+        assert!(words.contains(part), "{part}: {words}");
+    };
+    let of_range = |factor, offset| Mistake::Affine { of: Length::Range, factor, offset };
+    says("range.T is 1.0000000000001 times the true length", of_range(1.0000000000001, 0.0));
+    says("range.T is 1.000000001 times the true length plus 0.5 m", of_range(1.000000001, 0.5));
+    says("the flux is 2 times the true one", Mistake::FluxFactor(2.0));
+    says("the flux is 1.00000001 times the true one", Mistake::FluxFactor(1.00000001));
+    // The stated number is never told as the true one.
+    let focal = Mistake::FocalLength { stated: 0.00800000000001, truth: 0.008 };
+    says("the focal length is 8.00000000001 in place of 8 mm", focal);
+    says("(0, 0.00000000001, 0) m", Mistake::Moved([0.0, 1e-11, 0.0]));
+    // What single precision makes of a tenth.
+    let tenth = f64::from(0.1_f32);
+    says("the last row holds 0.1 everywhere", cut(CutBy::Row, true, 9.0, 1, Held::Constant(tenth)));
+    says("have the length 0.1 m", cut(CutBy::Range, true, 9.0, 0, Held::Constant(tenth)));
+}
+
+#[test]
 fn json_has_each_count_by_its_name() {
     let reason = Reason {
         sensors: vec![SensorId::Camera, SensorId::Beam(2)],
