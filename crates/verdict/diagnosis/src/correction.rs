@@ -112,6 +112,22 @@ impl Correction {
         }
     }
 
+    /// Whether it makes other lengths of lengths, by arithmetic.
+    pub(crate) fn is_of_the_size_of_lengths(&self) -> bool {
+        matches!(
+            self.mistake,
+            Mistake::Unit(_)
+                | Mistake::Affine { .. }
+                | Mistake::Inverse(_)
+                | Mistake::Squared(_)
+                | Mistake::FromPlane(_)
+                | Mistake::DepthForRange
+                | Mistake::ParameterForRange
+                | Mistake::RangeForDepth
+                | Mistake::ParameterForDepth
+        )
+    }
+
     /// Whether only one of the two can be made: they change the same convention.
     pub(crate) fn excludes(&self, other: &Self) -> bool {
         let kind = |mistake: &Mistake| match mistake {
@@ -141,8 +157,11 @@ impl Correction {
         };
         // A number that is fitted to lengths in another unit is that unit.
         let is_length = |mistake: &Mistake| matches!(mistake, Mistake::Unit(_) | Mistake::Affine { .. });
-        // A depth as t is a depth times one number, and from the plane less one number: with a fitted line it is another line.
-        let is_line = |mistake: &Mistake| matches!(mistake, Mistake::Affine { of: Length::Depth, .. });
+        // A depth as t is a depth times one number, and from the plane less one number: with a fitted line it is another line, and with a
+        // z-buffer another z-buffer.
+        let is_line = |mistake: &Mistake| {
+            matches!(mistake, Mistake::Affine { of: Length::Depth, .. } | Mistake::ZBuffer { .. })
+        };
         let is_of_depth = |mistake: &Mistake| {
             matches!(mistake, Mistake::ParameterForDepth | Mistake::FromPlane(Length::Depth))
         };
@@ -388,11 +407,25 @@ pub(crate) fn corrected(
     place: Place,
     corrections: &[&Correction],
 ) -> Option<Value> {
-    let mut source = place;
-    for one in corrections {
-        source = one.source(case, source)?;
-    }
-    let mut value = channel.at(&case.recorded.answers, source);
+    let source = source_of(case, place, corrections)?;
+    let stated = channel.at(&case.recorded.answers, source);
+    Some(corrected_from(case, channel, place, (source, stated), corrections))
+}
+
+/// The cell in which the ray of `place` stands before some corrections; `None` if no cell has it.
+fn source_of(case: Case<'_>, place: Place, corrections: &[&Correction]) -> Option<Place> {
+    corrections.iter().try_fold(place, |source, one| one.source(case, source))
+}
+
+/// The same for a value that is stated in the cell `source`.
+fn corrected_from(
+    case: Case<'_>,
+    channel: Channel,
+    place: Place,
+    (source, stated): (Place, Value),
+    corrections: &[&Correction],
+) -> Value {
+    let mut value = stated;
     // A constant for "no hit" is one of the file's own numbers: it goes before any of them changes.
     let is_miss =
         |one: &Correction| matches!(one.mistake, Mistake::MissWritten(_) | Mistake::MissAtMaximumRange);
@@ -401,7 +434,34 @@ pub(crate) fn corrected(
             value = one.correct(case, channel, place, source, value);
         }
     }
-    Some(value)
+    value
+}
+
+/// The least and the most that a number may have been, after some corrections, before its file rounded it: by so many of the units
+/// in which the file has it. `None` without such a number, or where they do not enclose it, as the reciprocals of less and more than 0.
+pub(crate) fn before_rounding(
+    case: Case<'_>,
+    channel: Channel,
+    place: Place,
+    corrections: &[&Correction],
+    units: f64,
+) -> Option<[f64; 2]> {
+    let source = source_of(case, place, corrections)?;
+    let Value::Number(stated) = channel.at(&case.recorded.answers, source) else { return None };
+    let unit = case.recorded.storage.get(&(channel.sensor, channel.item))?.ulp(stated);
+    let of = |number: f64| match corrected_from(
+        case,
+        channel,
+        place,
+        (source, Value::Number(number)),
+        corrections,
+    ) {
+        Value::Number(number) if number.is_finite() => Some(number),
+        _ => None,
+    };
+    let [a, here, b] = [of(stated - units * unit)?, of(stated)?, of(stated + units * unit)?];
+    let [least, most] = [a.min(b), a.max(b)];
+    (least..=most).contains(&here).then_some([least, most])
 }
 
 #[cfg(test)]

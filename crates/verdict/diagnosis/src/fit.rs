@@ -8,7 +8,7 @@ use crate::case::Case;
 use crate::channel::{Channel, Value};
 use crate::correction::{Correction, FluxFactors, Table, corrected};
 use crate::forward::is_rounded;
-use crate::lengths::{MAX_COSINE_OF_TWO_PLANES, lengths, rounded_to};
+use crate::lengths::{MAX_COSINE_OF_TWO_PLANES, are_several_multiples, lengths, rounded_to};
 use crate::mistake::{AngleUnit, Cosine, FrameAxes, Leg, Length, LengthUnit, Mistake, Vectors};
 use crate::numbers::{middle, plainest};
 use crate::tally::{MIN_CONFIRMING_RAYS, MIN_WRONG_RAYS};
@@ -179,6 +179,7 @@ fn rounded_points(case: Case<'_>) -> Option<Mistake> {
             is_rounded(*storage, *stated, *exact, quantum, false)
         };
         components.iter().filter(is).count() as f64 >= MIN_CONSISTENT_SHARE * components.len().max(1) as f64
+            && are_several_multiples(components.iter().filter(is).map(|(_, stated, _)| *stated), quantum)
     })
     .map(Mistake::PointsRounded)
 }

@@ -7,11 +7,11 @@ use rayon::prelude::*;
 use crate::agree::absorbed;
 use crate::case::Case;
 use crate::channel::{Channel, Value};
-use crate::correction::{Correction, corrected};
+use crate::correction::{Correction, before_rounding, corrected};
 use crate::sample::{Key, WrongRays, key, place, some_of};
 use crate::tally::Tally;
 use crate::trial::Plan;
-use raypencil_files::Storage;
+use raypencil_files::{Step, Storage};
 use raypencil_judge::{Quantity, Recorded, check_rays};
 use raypencil_scene::{Place, Precision, Scene, SensorId, Silent};
 
@@ -140,6 +140,28 @@ fn corrected_recording(case: Case<'_>, plan: &Plan) -> Recorded {
     recorded
 }
 
+/// A corrected value of a channel that is stored in steps, for the judge, who allows half a step to any value: the exact one if the steps
+/// explain what is left, and else one that half a step does not excuse. A step of the file is no step of a length that was made of it: of
+/// metres that are read as kilometres it is a thousand times as long.
+fn in_steps(
+    step: Step,
+    [stated, corrected, exact]: [Value; 3],
+    between: impl FnOnce() -> Option<[f64; 2]>,
+) -> Value {
+    match (stated, corrected, exact) {
+        (Value::Number(stated), Value::Number(number), Value::Number(own)) if stated != number => {
+            let slack = 8.0 * f64::EPSILON * own.abs();
+            let is_within = |[least, most]: [f64; 2]| (least - slack..=most + slack).contains(&own);
+            if between().is_some_and(is_within) {
+                return exact;
+            }
+            let half = (0.5 * step.get()).copysign(number - own);
+            Value::Number(if number == own { number } else { number + half })
+        }
+        _ => absorbed(Storage::Steps(step), stated, corrected, exact),
+    }
+}
+
 fn corrected_cells(
     case: Case<'_>,
     channel: Channel,
@@ -158,7 +180,12 @@ fn corrected_cells(
                 let Some(value) = corrected(case, channel, place, corrections) else { return exact };
                 let source = corrections.iter().try_fold(place, |source, one| one.source(case, source));
                 let stated = channel.at(&case.recorded.answers, source.unwrap_or(place));
-                match (absorbed(storage, stated, value, exact), exact) {
+                let between = || before_rounding(case, channel, place, corrections, 0.5);
+                let settled = match storage {
+                    Storage::Steps(step) => in_steps(step, [stated, value, exact], between),
+                    _ => absorbed(storage, stated, value, exact),
+                };
+                match (settled, exact) {
                     // What no correction makes right must be a number: one that is missing beside a face is not compared.
                     (Value::Number(number), Value::Number(exact)) if !number.is_finite() => {
                         Value::Number(2.0 * exact.abs() + 1.0)

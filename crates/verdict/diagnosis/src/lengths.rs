@@ -29,11 +29,12 @@ const MIN_SHARE_OF_LAW: f64 = 0.95;
 /// Digits of the depth of a z-buffer's plane, at most.
 const MAX_DIGITS: usize = 9;
 
-/// Lengths that must occur, at least, if they are rounded. Tuned.
-const MIN_ROUNDED_LENGTHS: usize = 3;
+/// Multiples of a quantum that must occur, at least, if lengths are rounded to it. Tuned: a large quantum makes 0 of all lengths, or 0 and
+/// one more, and so explains any that are short.
+pub(crate) const MIN_ROUNDED_LENGTHS: usize = 3;
 
 /// A quantum is so many times the last digit of the file's numbers: every number is a multiple of the last digit.
-const QUANTUM_DIGITS: f64 = 16.0;
+pub(crate) const QUANTUM_DIGITS: f64 = 16.0;
 
 /// Cosine of the angle between two planes that count as two. In one plane, a factor is the same as another place of the
 /// sensor: nothing tells them apart.
@@ -99,7 +100,7 @@ impl Pairs {
         let ratio = |(stated, exact): &(f64, f64)| (*exact > 0.0).then(|| stated / exact);
         let mut factors: Vec<f64> = self.values.iter().filter_map(ratio).collect();
         if let Some((factor, spread)) = middle(&mut factors, MIN_VALUES)
-            && spread * self.longest <= narrow
+            && (spread * self.longest <= narrow || self.is_factor_of_steps(factor, narrow))
             && (factor - 1.0).abs() > SIGNIFICANT * (spread + f64::EPSILON)
         {
             let of_ray = |stated: f64, exact: f64| stated / exact;
@@ -110,6 +111,13 @@ impl Pairs {
             found.extend(self.line(narrow));
         }
         found
+    }
+
+    /// Whether what a factor leaves of lengths in steps is as narrow as a step: of the shortest the ratios are the widest.
+    fn is_factor_of_steps(&self, factor: f64, narrow: f64) -> bool {
+        let mut left: Vec<f64> = self.values.iter().map(|(stated, exact)| stated - factor * exact).collect();
+        let spread = middle(&mut left, MIN_VALUES).map(|(_, spread)| spread);
+        matches!(self.storage, Storage::Steps(_)) && spread.is_some_and(|spread| spread <= narrow)
     }
 
     /// The plainest number that each ray allows whose last digit was rounded; without one, the plainest near the median.
@@ -172,6 +180,10 @@ impl Pairs {
             let is = |(stated, exact): &&(f64, f64)| (z_buffer(*exact, low, at) - stated).abs() <= slack;
             self.values.iter().filter(is).count() as f64 / self.values.len() as f64
         };
+        // Numbers that the slack does not tell apart follow any law.
+        if !are_several_multiples(by_reciprocal.iter().map(|(stated, _)| *stated), 2.0 * slack) {
+            return None;
+        }
         // One over the depth has a name of its own.
         if share(0.0, [f64::INFINITY, 1.0]) >= MIN_SHARE_OF_LAW {
             return None;
@@ -210,14 +222,21 @@ impl Pairs {
         if 2 * self.values.iter().filter(right).count() > self.values.len() {
             return Vec::new();
         }
-        // One length everywhere, or two, is no grid of lengths.
+        // One length everywhere, or two, is no half precision either.
         let stated: BTreeSet<u64> = self.values.iter().map(|(stated, _)| stated.to_bits()).collect();
         if stated.len() < MIN_ROUNDED_LENGTHS {
             return Vec::new();
         }
         let halves = self.values.iter().filter(|(stated, exact)| is_half(*stated, *exact)).count();
         let of_halves = halves as f64 / self.values.len() as f64;
-        let is = |quantum: f64, down: bool| share(quantum, down) >= MIN_SHARE_OF_MULTIPLES;
+        let is = |quantum: f64, down: bool| {
+            let on_grid = self
+                .values
+                .iter()
+                .filter(|(stated, exact)| is_rounded(self.storage, *stated, *exact, quantum, down));
+            share(quantum, down) >= MIN_SHARE_OF_MULTIPLES
+                && are_several_multiples(on_grid.map(|(stated, _)| *stated), quantum)
+        };
         let found = rounded_to(self.ulp, |quantum| is(quantum, false) || is(quantum, true));
         let found = found.map(|quantum| (quantum, !is(quantum, false)));
         let multiples = found.map(|(quantum, down)| Mistake::Rounded { of: self.of, quantum, down });
@@ -240,6 +259,14 @@ fn line_through(pairs: &[(f64, f64)]) -> Option<[f64; 2]> {
 /// The largest quantum that `is_grid` says the lengths lie on, and that they have digits beside.
 pub(crate) fn rounded_to(ulp: f64, is_grid: impl Fn(f64) -> bool) -> Option<f64> {
     quanta().into_iter().filter(|quantum| *quantum >= QUANTUM_DIGITS * ulp).find(|quantum| is_grid(*quantum))
+}
+
+/// Whether some lengths are several different multiples of a quantum: one everywhere, or two, is no grid of lengths.
+pub(crate) fn are_several_multiples(stated: impl Iterator<Item = f64>, quantum: f64) -> bool {
+    // 0 in place of -0.
+    let multiples: BTreeSet<u64> =
+        stated.map(|stated| ((stated / quantum).round() + 0.0).to_bits()).collect();
+    multiples.len() >= MIN_ROUNDED_LENGTHS
 }
 
 /// Quanta that are tried, metres, the largest first: 1, 2 and 5 of each decimal place, and powers of two.
@@ -292,6 +319,26 @@ mod tests {
         assert_eq!(line_through(&above_each_other), None);
         let level: Vec<(f64, f64)> = pairs.iter().map(|(_, x)| (5.0, *x)).collect();
         assert_eq!(line_through(&level), None);
+    }
+
+    #[test]
+    fn short_lengths_are_no_multiples_of_a_long_quantum() {
+        let exact = || (0..24).map(|k| 1.05 + f64::from(k) / 12.0);
+        let of = |storage: Storage, made: fn(f64) -> f64| {
+            let values = exact().map(|exact| (made(exact), exact)).collect();
+            let ulp = storage.ulp(made(2.9));
+            Pairs { of: Length::Depth, values, has_planes: true, storage, ulp, longest: 2.97 }.rounded()
+        };
+        let told = |quantum, down| vec![Mistake::Rounded { of: Length::Depth, quantum, down }];
+        // Lengths of less than a last digit are 0 for all that half precision shows: rounded down to 5 m, so are these.
+        assert_eq!(of(Storage::F16, |exact| 1e-9 * exact), []);
+        // 1 and 2 m: rounded down to 1 m, or one of two constants.
+        assert_eq!(of(Storage::F64, f64::floor), []);
+        assert_eq!(of(Storage::F64, |exact| (2.0 * exact).floor() / 2.0), told(0.5, true));
+        assert_eq!(of(Storage::F64, f64::round), told(1.0, false));
+        // -0 and 0 are one multiple.
+        assert!(!are_several_multiples([-0.1, 0.1, 1.0].into_iter(), 1.0));
+        assert!(are_several_multiples([-0.1, 1.0, 2.0].into_iter(), 1.0));
     }
 
     #[test]

@@ -1,11 +1,14 @@
 //! Trials: how many sampled values a set of corrections leaves off, and which channels each correction helps.
 
+use std::collections::BTreeSet;
+
 use raypencil_scene::Place;
 
-use crate::agree::is_near;
+use crate::agree::is_near_after;
 use crate::case::Case;
 use crate::channel::{Channel, Value};
 use crate::correction::{Correction, corrected};
+use crate::lengths::{MIN_ROUNDED_LENGTHS, QUANTUM_DIGITS};
 
 /// Sampled rays and their exact values, channel by channel.
 #[derive(Debug)]
@@ -76,19 +79,38 @@ impl<'t> Trial<'t> {
         let (case, channel) = (self.case, self.channels[index]);
         let mut off = Off::default();
         for (place, exact) in &self.samples[index] {
-            let is_off = |value| !is_near(case, channel, *place, value, *exact);
+            let is_off =
+                |value, by: &[&Correction]| !is_near_after(case, channel, *place, by, [value, *exact]);
             match corrected(case, channel, *place, corrections) {
-                Some(value) => off.held += u32::from(is_off(value)),
-                None => off.lost += u32::from(is_off(channel.at(&case.recorded.answers, *place))),
+                Some(value) => off.held += u32::from(is_off(value, corrections)),
+                None => off.lost += u32::from(is_off(channel.at(&case.recorded.answers, *place), &[])),
             }
         }
         off
     }
 
+    /// Whether a channel holds too few numbers, of too few steps, to show how its lengths grow: one length everywhere of 1 step may be
+    /// nearly anything.
+    fn is_coarse(&self, index: usize) -> bool {
+        let channel = self.channels[index];
+        let Some(storage) = self.case.recorded.storage.get(&(channel.sensor, channel.item)) else {
+            return false;
+        };
+        let (mut numbers, mut is_short) = (BTreeSet::new(), false);
+        for (place, _) in &self.samples[index] {
+            if let Value::Number(number) = channel.at(&self.case.recorded.answers, *place) {
+                is_short |= number.abs() < QUANTUM_DIGITS * storage.ulp(number);
+                numbers.insert(number.to_bits());
+            }
+        }
+        is_short && numbers.len() < MIN_ROUNDED_LENGTHS
+    }
+
     /// What one correction leaves off.
     pub(crate) fn single(&self, correction: &Correction) -> Single {
         let one = |(index, channel): (usize, &Channel)| {
-            correction.touches(*channel).then(|| self.off(index, &[correction]))
+            let is_told = !(correction.is_of_the_size_of_lengths() && self.is_coarse(index));
+            (correction.touches(*channel) && is_told).then(|| self.off(index, &[correction]))
         };
         self.channels.iter().enumerate().map(one).collect()
     }

@@ -1,6 +1,7 @@
 //! Which mistakes `diagnose` names: on candidates made from the exact answers.
 
 pub(crate) mod candidates;
+mod coarse;
 mod drawn;
 mod light;
 mod one;
