@@ -251,7 +251,7 @@ fn a_candidate_of_sets_of_rays_alone_is_judged() {
     fs::rename(at.join("mine/rays/front"), at.join("mine/rays/other")).expect("a folder");
     assert_trouble(
         &raypencil(at, &["validate", "lidar.toml", "--candidate", "mine"]),
-        &["mine: folder: no maps"],
+        &["mine/rays/other", "answers to a set `other`; expected answers to down, front"],
     );
     let pyramids = super::check::pack("pyramids").to_string_lossy().into_owned();
     assert_trouble(&raypencil(at, &["check", &pyramids, "mine"]), &["mine: folder: no maps"]);
@@ -370,7 +370,7 @@ fn clouds_of_cast_are_right_in_their_own_frame_and_told_in_another() {
     for (file, frame) in of_frames {
         let file = format!("cast/{file}");
         let shown = screen(folder.path(), &["check", "pack", &file, "--frame", frame], 0);
-        assert!(shown.contains("laid on the rays by ring and time. Judged: x, y, z, which rays have a point, and the field range"), "{shown}");
+        assert!(shown.contains("laid on the rays by ring and time. Judged: x, y, z, which rays have a point, and the fields ring, time, range"), "{shown}");
     }
     // Compressed, the same clouds; and scan by scan.
     let packed = ["--pcd", "binary_compressed", "-o", "packed"];
