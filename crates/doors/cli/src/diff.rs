@@ -7,7 +7,6 @@ use raypencil::diff::{Sides, Thresholds, diff as compare, diff_document, rule, w
 use raypencil::harness::read_sides;
 use raypencil::io::{OutputFolder, Overrides, load};
 use raypencil::judge::{GroundTruth, check as judge};
-use raypencil::pack::CheckError;
 
 use crate::args::Diff;
 use crate::console::{Spinner, is_terminal, say};
@@ -53,7 +52,7 @@ pub(crate) fn diff(command: &Diff, json: bool) -> Result<Outcome, Trouble> {
         let scene = load(scene, &Overrides { settings: command.set.clone(), ..Overrides::default() })?.scene;
         let recorded = [&a, &b].map(|side| side.recorded(&scene, command.arithmetic));
         let [of_a, of_b] = recorded;
-        let (of_a, of_b) = (of_a.map_err(CheckError::from)?, of_b.map_err(CheckError::from)?);
+        let (of_a, of_b) = (of_a?, of_b?);
         let truth = GroundTruth::certified(&scene, &spinner);
         let [of_a, of_b] = [of_a, of_b].map(|recorded| judge(&truth, &recorded, &spinner));
         let rulings = rule(&difference, &sides, &truth, [&of_a, &of_b]);

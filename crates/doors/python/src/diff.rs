@@ -20,7 +20,7 @@ use crate::watch::watched;
 #[pyfunction]
 #[pyo3(signature = (
     a, b, channels, scale, fail, fail_relative, fail_ulp, fail_percent, hard_fail, shared_only, scene=None,
-    arithmetic="f64", output=None, force=false, on_stage=None
+    arithmetic=None, output=None, force=false, on_stage=None
 ))]
 pub(crate) fn diff(
     py: Python<'_>,
@@ -35,12 +35,12 @@ pub(crate) fn diff(
     hard_fail: Option<f64>,
     shared_only: bool,
     scene: Option<&Bound<'_, SceneCore>>,
-    arithmetic: &str,
+    arithmetic: Option<&str>,
     output: Option<PathBuf>,
     force: bool,
     on_stage: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(bool, String, String)> {
-    let precision = precision(arithmetic).map_err(|failure| failure.into_exception(py))?;
+    let precision = arithmetic.map(precision).transpose().map_err(|failure| failure.into_exception(py))?;
     let scene = scene.map(|scene| scene.get().clone());
     watched(py, on_stage, move |watch| {
         if let Some(folder) = &output {
@@ -64,10 +64,7 @@ pub(crate) fn diff(
         let sides = Sides { names: [&names[0], &names[1]], channels: [&of_a.channels, &of_b.channels] };
         if let Some(scene) = &scene {
             let scene = &scene.loaded.scene;
-            let helped = |error| {
-                let error = CheckError::from(error);
-                Failure::with_help(&error, error.help())
-            };
+            let helped = |error: CheckError| Failure::with_help(&error, error.help());
             let recorded = |side: &Side| side.recorded(scene, precision).map_err(helped);
             let (of_a, of_b) = (recorded(&of_a)?, recorded(&of_b)?);
             let truth = GroundTruth::certified(scene, watch);

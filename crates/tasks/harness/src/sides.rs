@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use raypencil_files::{
     Channels, Declared, DeclaredChannel, FileError, Limits, add_ray_sets, read_channels_as,
 };
-use raypencil_judge::{Conventions, Recorded, RecordingError};
-use raypencil_pack::Declarations;
+use raypencil_judge::{Conventions, Recorded};
+use raypencil_pack::{CheckError, Declarations, note};
 use raypencil_scene::{Precision, Progress, Scene};
 
 /// A recording that is one side of a comparison.
@@ -18,16 +18,21 @@ pub struct Side {
     pub channels: Channels,
     declared: Declared,
     conventions: Conventions,
+    /// That of its computation, as its `candidate.json` says, or else double precision.
+    precision: Precision,
 }
 
 impl Side {
-    /// The same as answers about a scene, for the referee.
+    /// The same as answers about a scene, for the referee. `precision` is that of its computation; `None`: as its `candidate.json` says,
+    /// else double precision.
     ///
     /// # Errors
-    /// Names the file, the channel and the cell that breaks the conventions.
-    pub fn recorded(&self, scene: &Scene, precision: Precision) -> Result<Recorded, RecordingError> {
+    /// Names the file, the channel and the cell that breaks the conventions; a `candidate.json` that names another scene.
+    pub fn recorded(&self, scene: &Scene, precision: Option<Precision>) -> Result<Recorded, CheckError> {
+        note(&self.path, scene)?;
         let channels = Recorded::channels(&self.path, scene, &self.declared)?;
-        Recorded::of_folder(&self.path, scene, precision, &channels, self.conventions)
+        let precision = precision.unwrap_or(self.precision);
+        Ok(Recorded::of_folder(&self.path, scene, precision, &channels, self.conventions)?)
     }
 }
 
@@ -53,8 +58,9 @@ pub fn read_sides(
             refuse(path, missing)?;
         }
         add_ray_sets(&mut channels, path, &limits)?;
-        let conventions = of_side.conventions();
-        Ok(Side { path: path.to_path_buf(), declared: declared.used(&channels.used), channels, conventions })
+        let (conventions, precision) = (of_side.conventions(), of_side.precision());
+        let declared = declared.used(&channels.used);
+        Ok(Side { path: path.to_path_buf(), declared, channels, conventions, precision })
     };
     let sides = [read(paths[0])?, read(paths[1])?];
     let [a, b] = &sides;

@@ -50,8 +50,8 @@ pub(super) fn ray_set_channels(folder: &Path, left: &mut Limits) -> Result<Chann
 }
 
 /// Adds the arrays of a folder's sets of rays to its channels, with keys such as `rays/mast/point.X`. A set of shape
-/// (..., n) becomes rasters of n columns; a flat one has one row. Flat arrays of another length, such as those of all hits of
-/// each ray, are one row; arrays of another shape are left out.
+/// (..., n) becomes rasters of n columns; a flat one has one row. Arrays of another shape, such as those of all hits of
+/// each ray, are rasters as wide as their last dimension.
 ///
 /// ```
 /// use raypencil_files::{Channels, Limits, add_ray_sets, create_folder, write_npy_numbers};
@@ -128,13 +128,12 @@ fn name(part: Option<&std::ffi::OsStr>) -> String {
     part.map(|part| part.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// The components of an array: those that each ray of a set of this shape has, or a flat array as one row; none of another
-/// array.
+/// The components of an array: those that each ray of a set of this shape has. An array of another shape is one raster, as wide as its last
+/// dimension.
 fn planes(array: &Numbers, shape: &[u64], file: &Path) -> Result<Vec<(String, Values)>, FileError> {
     let (of_ray, columns): (&[u64], u64) = match (array.shape.strip_prefix(shape), array.shape.as_slice()) {
         (Some(of_ray), _) => (of_ray, shape.last().copied().unwrap_or(1)),
-        (None, [count]) => (&[], *count),
-        (None, _) => return Ok(Vec::new()),
+        (None, shape) => (&[], shape.last().copied().unwrap_or(1)),
     };
     // Before the names: a shape with a 0 may have any number of components.
     if array.values.is_empty() {

@@ -64,9 +64,10 @@ pub(crate) struct Diff {
     #[arg(long, value_name = "KEY=VALUE", requires = "scene", value_parser = setting)]
     pub(crate) set: Vec<Setting>,
 
-    /// Arithmetic in which both recordings were computed, for the referee.
-    #[arg(long, value_name = "ARITHMETIC", default_value = "f64", requires = "scene", value_parser = precision())]
-    pub(crate) arithmetic: Precision,
+    /// Arithmetic in which both recordings were computed, for the referee. Default: for each as its candidate.json says,
+    /// else f64.
+    #[arg(long, value_name = "ARITHMETIC", requires = "scene", value_parser = precision())]
+    pub(crate) arithmetic: Option<Precision>,
 
     /// Folder for report.html, junit.xml, summary.md and summary.json; without it none are written.
     #[arg(short, long, value_name = "DIR")]

@@ -266,7 +266,7 @@ def diff(
     hard_fail: float | None,
     shared_only: bool,
     scene: SceneCore | None = None,
-    arithmetic: str = "f64",
+    arithmetic: str | None = None,
     output: _Path | None = None,
     force: bool = False,
     on_stage: _OnStage = None,

@@ -150,7 +150,7 @@ def diff(
     hard_fail: float | None = None,
     shared_only: bool = False,
     scene: Any = None,
-    arithmetic: Arithmetic = "f64",
+    arithmetic: Arithmetic | None = None,
     output: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: Progress = False,
@@ -170,7 +170,8 @@ def diff(
         shared_only: ignore channels that one side has alone.
         scene: a :class:`Scene`, or a name or path of one. The referee then rules on each cell that differs by more than is
             allowed, and a channel fails only if a side is wrong.
-        arithmetic: with ``scene``, the arithmetic in which both were computed.
+        arithmetic: with ``scene``, the arithmetic in which both were computed. Default: for each as its ``candidate.json``
+            says, else ``"f64"``.
         output: a folder for the report.
         force: replace what ``output`` has of another command, or of something else; without it that is an error.
         progress: see :func:`cast`.

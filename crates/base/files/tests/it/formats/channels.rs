@@ -340,6 +340,11 @@ fn a_folder_that_is_a_set_of_rays_is_read_whatever_the_dimensions_of_its_arrays(
     write_npy_numbers(flat.path("point.npy"), &[3, 3], &[0.5; 9]).unwrap();
     let read = flat.read().unwrap();
     assert_eq!([read.by_key["t"].values.size(), read.by_key["point.X"].values.size()], [(3, 1), (3, 1)]);
+    // Arrays of no shape of the set are rasters as they stand: none is left out.
+    write_npy_numbers(flat.path("range.npy"), &[2, 3, 4], &[0.25; 24]).unwrap();
+    write_npy_numbers(flat.path("own.npy"), &[], &[7.0]).unwrap();
+    let read = flat.read().unwrap();
+    assert_eq!([read.by_key["range"].values.size(), read.by_key["own"].values.size()], [(4, 6), (1, 1)]);
 }
 
 #[test]

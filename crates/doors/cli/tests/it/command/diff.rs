@@ -162,3 +162,39 @@ fn errors_are_one_clear_message() {
         assert!(text(&output.stderr).contains(expected), "{}", text(&output.stderr));
     }
 }
+
+/// The note of a side is followed: single precision is rounding, and a recording of another scene is none of this one.
+#[test]
+fn the_referee_follows_the_note_of_each_side() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let at = folder.path();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../data");
+    let theirs = data.join("candidates/embree/pyramids");
+    let mine = at.join("mine");
+    let mut folders = vec![theirs.clone()];
+    while let Some(from) = folders.pop() {
+        let to = mine.join(from.strip_prefix(&theirs).expect("a folder within"));
+        std::fs::create_dir(&to).expect("a folder");
+        for entry in std::fs::read_dir(&from).expect("a folder").flatten() {
+            match entry.path().is_dir() {
+                true => folders.push(entry.path()),
+                false => drop(std::fs::copy(entry.path(), to.join(entry.file_name())).expect("a file")),
+            }
+        }
+    }
+    let scene = data.join("packs/pyramids/scene.toml").to_string_lossy().into_owned();
+    let pack = data.join("packs/pyramids").to_string_lossy().into_owned();
+    let line = ["diff", pack.as_str(), "mine", "--scene", scene.as_str(), "--shared-only"];
+    let told = |more: &[&str], code: i32| screen(at, &[&line[..], more].concat(), code);
+    let by_note = told(&[], 0);
+    assert!(by_note.contains("B rounding"), "{by_note}");
+    assert_eq!(told(&["--arithmetic", "f32"], 0), by_note);
+    let doubles = told(&["--arithmetic", "f64"], 1);
+    assert!(doubles.contains("B wrong"), "{doubles}");
+    let note = mine.join("candidate.json");
+    let text = std::fs::read_to_string(&note).expect("a note");
+    let (before, after) = text.split_once("\"sha256\": \"").expect("the digest of its scene");
+    std::fs::write(&note, format!("{before}\"sha256\": \"{}{}", "0".repeat(64), &after[64..]))
+        .expect("a file");
+    assert_trouble(&raypencil(at, &line), &["candidate.json"]);
+}
