@@ -155,6 +155,19 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// Columns and rows of the pixels that all beams name: one beam may land on a corner of the image alone.
+    fn pixels(&mut self) -> Vec<[u32; 2]> {
+        let mut pixels = Vec::new();
+        for sensor in (0..self.scene.beams().len()).map(SensorId::Beam) {
+            let [columns, rows] = names::PIXEL.map(|name| self.wholes(sensor, name).ok().flatten());
+            if let (Some(columns), Some(rows)) = (columns, rows) {
+                pixels.extend(columns.cells().iter().zip(rows.cells()).map(|(i, j)| [*i, *j]));
+            }
+        }
+        pixels.retain(|pair| *pair != [u32::MAX; 2]);
+        pixels
+    }
+
     /// Whole numbers, also if they are stored as floating-point ones; -1 and numbers that are not finite mean "none".
     fn wholes(&mut self, sensor: SensorId, name: &str) -> Result<Option<Image<u32>>, RecordingError> {
         let Some((name, channel)) = self.channel(sensor, name)? else { return Ok(None) };
@@ -334,8 +347,8 @@ impl<'a> Reader<'a> {
                             camera.width, camera.height
                         );
                         let found = format!("pixel {i},{j}");
+                        let help = pixels_otherwise(&self.pixels(), [camera.width, camera.height]);
                         let channel = (names::PIXEL[0], &self.channels.by_key[&key]);
-                        let help = pixels_otherwise([&columns, &rows], [camera.width, camera.height]);
                         return Err(Self::with_help(Self::fault(channel, at, found, &expected), help));
                     }
                     cells.push(Maybe::from((!is_none).then_some(Pixel { i, j })));
@@ -432,9 +445,8 @@ fn maybe(reals: Reals<'_>, hits: Hits<'_>, is_length: bool) -> Result<Image<Mayb
 
 /// A line of help for pixels outside the image: what would bring all of them into it. One wrong pixel shows no rule, and so nothing is
 /// said of it.
-fn pixels_otherwise(stated: [&Image<u32>; 2], size: [u32; 2]) -> Option<String> {
-    let [columns, rows] = stated.map(Image::cells);
-    let pairs = || columns.iter().zip(rows).map(|(i, j)| [*i, *j]).filter(|pair| *pair != [u32::MAX; 2]);
+fn pixels_otherwise(pixels: &[[u32; 2]], size: [u32; 2]) -> Option<String> {
+    let pairs = || pixels.iter().copied();
     let outside = |axis: usize| -> Vec<u32> {
         pairs().map(|pair| pair[axis]).filter(|one| *one >= size[axis]).collect()
     };
@@ -536,13 +548,9 @@ fn flux(Reals { name, channel, image }: Reals<'_>) -> Result<Image<f64>, Recordi
 mod tests {
     use super::*;
 
-    /// What is said of pixels of an image of 4 x 3; the last cell names none.
-    fn said(pairs: &[[u32; 2]]) -> Option<String> {
-        let all = || pairs.iter().copied().chain([[u32::MAX; 2]]);
-        let image = |axis: usize| {
-            Image::from_cells(pairs.len() as u32 + 1, 1, all().map(|pair: [u32; 2]| pair[axis]).collect())
-        };
-        pixels_otherwise([&image(0), &image(1)], [4, 3])
+    /// What is said of pixels of an image of 4 x 3.
+    fn said(pixels: &[[u32; 2]]) -> Option<String> {
+        pixels_otherwise(pixels, [4, 3])
     }
 
     #[test]
@@ -568,12 +576,7 @@ mod tests {
         assert_eq!(said(&one), None);
         // An image of 7 x 3, of which the pixels are exchanged.
         let wide: Vec<[u32; 2]> = (0..7).flat_map(|i| (0..3).map(move |j| [j, i])).collect();
-        let of_wide = |pairs: &[[u32; 2]]| {
-            let image = |axis: usize| {
-                Image::from_cells(pairs.len() as u32, 1, pairs.iter().map(|pair| pair[axis]).collect())
-            };
-            pixels_otherwise([&image(0), &image(1)], [7, 3])
-        };
+        let of_wide = |pixels: &[[u32; 2]]| pixels_otherwise(pixels, [7, 3]);
         assert_eq!(of_wide(&wide), exchanged);
         // All but one: that is no exchange.
         let mut but_one = wide;

@@ -7,7 +7,7 @@ use glam::DVec3;
 use raypencil_files::write_npy;
 use raypencil_judge::{Conventions, GroundTruth, Quantity, Recorded, RecordingError, check};
 use raypencil_scene::{
-    Atmosphere, Camera, FluxModel, Image, Lens, Material, Mesh, Mounted, Pose, Precision, Scene, Silent,
+    Atmosphere, Camera, FluxModel, Image, Lens, Material, Mesh, Mounted, Pose, Precision, Scene, Silent, rig,
 };
 
 /// A wall at z = 2 m that ends at x = 1/8 m, before a camera of 9 x 8 pixels at the origin that looks along z. Columns 0
@@ -179,4 +179,31 @@ fn a_folder_of_recordings_is_refused_by_their_names() {
     // A text beside them is no recording.
     std::fs::write(parent.path().join("notes/camera.txt"), []).unwrap();
     assert!(refusal().contains("2 recordings, mine, theirs"), "{}", refusal());
+}
+
+#[test]
+fn what_pixels_outside_the_image_show_is_looked_for_in_all_beams() {
+    let wall = wall();
+    let (_, mut beams) = rig::default_rig(16, DVec3::ZERO, 0.0);
+    beams.iter_mut().for_each(|beam| (beam.sensor.columns, beam.sensor.rows) = (4, 1));
+    let (mesh, camera) = (Arc::clone(wall.mesh()), *wall.camera());
+    let scene = Scene::new(mesh, camera, beams, wall.atmosphere(), wall.flux_model()).unwrap();
+    let refused = |rows: [[u32; 4]; 2]| {
+        let folder = tempfile::tempdir().unwrap();
+        for (beam, (rows, columns)) in rows.into_iter().zip([[0, 1, 2, 3], [5, 6, 7, 8]]).enumerate() {
+            let beam = folder.path().join(format!("beam-{beam}"));
+            std::fs::create_dir(&beam).unwrap();
+            for (name, cells) in [("pixel.I.npy", columns), ("pixel.J.npy", rows)] {
+                write_npy(beam.join(name), &[&Image::from_cells(4, 1, cells.to_vec())]).unwrap();
+            }
+        }
+        let read = Recorded::read_by(folder.path(), &scene, Precision::F64, Conventions::STANDARD);
+        format!("{:?}", read.unwrap_err())
+    };
+    // The second beam lands in the last row alone, which is row 7 of 8; the first one shows that none is row 0.
+    let told = refused([[1, 2, 3, 4], [8; 4]]);
+    assert!(told.contains("\"rows count from 0, and not from 1\""), "{told}");
+    // Row 0 is there: the second beam is wrong.
+    let told = refused([[0, 1, 2, 3], [8; 4]]);
+    assert!(told.contains("expected") && !told.contains("count from"), "{told}");
 }
