@@ -279,3 +279,7 @@ fn length(v: DVec3) -> f64 {
         _ => v.length(),
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/moved_rays.rs"]
+mod tests;

@@ -95,6 +95,20 @@ fn a_slanted_face_that_comes_too_near_ends_both_margins() {
 }
 
 #[test]
+fn faces_that_cross_where_they_are_met_are_told_apart_by_a_size_that_f64_can_tell() {
+    // Two planes through the line x = 15/8, z = 0, which sink to one side each.
+    let vertices = [[-2.125, -9.0, -4.0], [5.875, -9.0, 4.0], [1.875, 9.0, 0.0], [-2.125, -9.0, 4.0], [5.875, -9.0, -4.0]];
+    let crossed = mesh(&vertices, &[[0, 1, 2], [3, 4, 2]]);
+    let cast = ExactCast::new(&crossed);
+    let ray = down(1.875, -4.0, 5.0);
+    assert_eq!(cast.first(&ray, Sides::Both).len(), 2);
+    let margin = cast.margins(&ray, Sides::Both).face;
+    // 2^-52 of the largest coordinate.
+    let smallest = 9.0 * f64::EPSILON;
+    assert!(margin.lo == 0.0 && smallest <= margin.hi && margin.hi <= 2.0 * smallest, "{margin:?}");
+}
+
+#[test]
 fn margins_are_capped_at_the_diagonal_of_the_box() {
     // A square of side 2^20 met in its middle, and one far away.
     let square = SQUARE.map(|v| v.map(|x| x * 1_048_576.0));

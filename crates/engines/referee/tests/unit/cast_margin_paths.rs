@@ -15,6 +15,7 @@ use super::region::{LazyLinear, least_size};
 use super::segment::{Border, Piece, Segment};
 use super::*;
 use crate::numbers::number::{Dyadic, Interval, Number};
+use crate::numbers::vector::Vector;
 use crate::splitmix::SplitMix64;
 
 type Corners = Vec<[DVec3; 3]>;
@@ -367,4 +368,28 @@ fn copies_of_faces_change_no_margin() {
     let ray = CastRay::new(DVec3::new(0.5, 0.25, 4.0), DVec3::NEG_Z);
     let margin = ExactCast::new(&square).margins(&ray, Sides::Fronts).surface;
     assert!(margin.lo <= 0.25 && margin.lo > 0.2499, "{margin:?}");
+}
+
+/// Ranges of the ray's ends, on the far sides of what their roundings come to.
+#[test]
+fn the_ranges_of_the_ends_of_a_ray_have_room_for_rounding() {
+    let mut random = SplitMix64(12);
+    for _ in 0..1000 {
+        let mut point = || point(&mut random);
+        let (direction, [from, long, _]) = (point(), point().to_array());
+        let t_min = from.abs();
+        let ray = CastRay { t_min, t_max: t_min + long.abs(), ..CastRay::new(DVec3::ZERO, direction) };
+        let frame = Frame::new(&ray);
+        let square = |x: f64| Dyadic::of(x).square();
+        let length = Vector::<Dyadic>::of(direction).length_squared();
+        // The signs of s (1 + m 2^-50) - t |d|, by their squares: both are positive.
+        let sign = |s: f64, m: f64, t: f64| {
+            let factor = Dyadic::of(1.0 + m * 4.0 * f64::EPSILON);
+            square(s).mul(&factor.square()).sub(&square(t).mul(&length)).sign().expect("an exact sign")
+        };
+        let [least, greatest] = frame.ranges();
+        assert!(sign(frame.range_after_start(), -1.0, ray.t_min).is_gt(), "{ray:?}");
+        assert!(sign(least, 1.0, ray.t_min).is_lt(), "{ray:?}");
+        assert!(sign(greatest, -1.0, ray.t_max).is_gt(), "{ray:?}");
+    }
 }
