@@ -168,6 +168,30 @@ fn the_ends_of_the_ray_cut_faces_off() {
     assert_is(cast.margins(&long, Sides::Both).surface, 0.25);
 }
 
+/// In the middle of a large surface all faces of a node, and those behind their edges, show one side. There is no border, but an end of the
+/// ray makes one.
+#[test]
+fn an_end_of_the_ray_cuts_faces_off_where_all_around_show_the_same_side() {
+    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
+    for x in 0..17 {
+        vertices.extend((0..17).map(|y| [f64::from(x), f64::from(y), f64::from(x)]));
+    }
+    for x in 0..16 {
+        for corner in (0..16).map(|y| 17 * x + y) {
+            faces.extend([[corner, corner + 17, corner + 18], [corner, corner + 18, corner + 1]]);
+        }
+    }
+    let ramp = mesh(&vertices, &faces);
+    let cast = ExactCast::new(&ramp);
+    for sides in [Sides::Fronts, Sides::Both] {
+        // From above at z = 20, t = 20 - x, so that it ends at x = 8.
+        let ended = CastRay { t_max: 12.0, ..down(8.25, 8.25, 20.0) };
+        assert_is(cast.margins(&ended, sides).surface, 0.25);
+        let started = CastRay { t_min: 12.0, ..down(7.625, 8.25, 20.0) };
+        assert_is(cast.margins(&started, sides).surface, 0.375);
+    }
+}
+
 /// The condition of an end is 0 all over a face that lies in it, and ends it nowhere: the diagonal of a square there is as
 /// little a jump as elsewhere.
 #[test]
