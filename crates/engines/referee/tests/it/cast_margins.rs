@@ -97,7 +97,13 @@ fn a_slanted_face_that_comes_too_near_ends_both_margins() {
 #[test]
 fn faces_that_cross_where_they_are_met_are_told_apart_by_a_size_that_f64_can_tell() {
     // Two planes through the line x = 15/8, z = 0, which sink to one side each.
-    let vertices = [[-2.125, -9.0, -4.0], [5.875, -9.0, 4.0], [1.875, 9.0, 0.0], [-2.125, -9.0, 4.0], [5.875, -9.0, -4.0]];
+    let vertices = [
+        [-2.125, -9.0, -4.0],
+        [5.875, -9.0, 4.0],
+        [1.875, 9.0, 0.0],
+        [-2.125, -9.0, 4.0],
+        [5.875, -9.0, -4.0],
+    ];
     let crossed = mesh(&vertices, &[[0, 1, 2], [3, 4, 2]]);
     let cast = ExactCast::new(&crossed);
     let ray = down(1.875, -4.0, 5.0);

@@ -163,17 +163,22 @@ fn the_shortest_range_is_as_uncertain_as_ranges() {
     assert!(is_rounding(rule(&mesh, &blind(3.0_f64.next_up()), Some(0))));
     // The bound is that of the range: 72 kappa u S / c, with kappa = sqrt(2), S = 1 + 3 and c = 1.
     let exact = ExactCast::new(&mesh);
-    for precision in [Precision::F64, Precision::F32] {
-        let bound = exact.range_error(&blind(3.0), FaceId(0), precision);
-        let of = |t_blind: f64, stated| exact.rule(&blind(t_blind), Sides::Both, stated, precision);
-        let (plate, near) = (Reading::Hit(FaceId(0)), Reading::TooNear);
-        assert!(is_rounding(of(3.0 + 0.9 * bound, plate)) && is_rounding(of(3.0 - 0.9 * bound, near)));
-        assert_eq!(of(3.0 + 1.1 * bound, plate), Ruling::Wrong);
-        assert_eq!(of(3.0 - 1.1 * bound, near), Ruling::Wrong);
-        // Whoever passes through the plate, or misses it, is wrong however near the limit is.
-        for stated in [Reading::Hit(FaceId(2)), Reading::Miss] {
-            assert_eq!(of(3.0 + 0.5 * bound, stated), Ruling::Wrong);
-            assert_eq!(of(3.0 - 0.5 * bound, stated), Ruling::Wrong);
+    // In t it is that part of the direction's length.
+    for length in [1.0, 1024.0, 1.0 / 1024.0] {
+        let blind =
+            |range: f64| CastRay { direction: length * DVec3::NEG_Z, t_blind: range / length, ..blind(0.0) };
+        for precision in [Precision::F64, Precision::F32] {
+            let bound = exact.range_error(&blind(3.0), FaceId(0), precision);
+            let of = |t_blind: f64, stated| exact.rule(&blind(t_blind), Sides::Both, stated, precision);
+            let (plate, near) = (Reading::Hit(FaceId(0)), Reading::TooNear);
+            assert!(is_rounding(of(3.0 + 0.9 * bound, plate)) && is_rounding(of(3.0 - 0.9 * bound, near)));
+            assert_eq!(of(3.0 + 1.1 * bound, plate), Ruling::Wrong);
+            assert_eq!(of(3.0 - 1.1 * bound, near), Ruling::Wrong);
+            // Whoever passes through the plate, or misses it, is wrong however near the limit is.
+            for stated in [Reading::Hit(FaceId(2)), Reading::Miss] {
+                assert_eq!(of(3.0 + 0.5 * bound, stated), Ruling::Wrong);
+                assert_eq!(of(3.0 - 0.5 * bound, stated), Ruling::Wrong);
+            }
         }
     }
 }

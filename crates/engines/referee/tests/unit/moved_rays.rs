@@ -17,7 +17,8 @@ fn the_exact_origin_of_a_moved_ray_is_within_the_radius_of_its_bundle() {
         let by = [random.part() * by, random.part() * by];
         let bundle = moved_bundle(&ray, by);
         let [u, v] = ray.across().map(Vector::<Dyadic>::of);
-        let exact = Vector::of(ray.origin).add(&u.scaled(&Dyadic::of(by[0]))).add(&v.scaled(&Dyadic::of(by[1])));
+        let exact =
+            Vector::of(ray.origin).add(&u.scaled(&Dyadic::of(by[0]))).add(&v.scaled(&Dyadic::of(by[1])));
         let most = Dyadic::of(0.25 * bundle.start_radius);
         for off in exact.sub(&Vector::of(bundle.origin)).0 {
             for off in [off.clone(), Dyadic::of(0.0).sub(&off)] {

@@ -32,7 +32,8 @@ fn the_least_size_of_a_segment_is_hardly_less_than_the_way_to_its_line() {
     let frame = Frame::new(&ray);
     let screen = Screen::new(&frame, 4.0).expect("a frame of this size");
     // Ends, and the least |a| or |b| at which a + b = 3, b = -2, or 0.
-    let cases = [([3.0, 0.0], [0.0, 3.0], 1.5), ([-0.5, -2.0], [0.25, -2.0], 2.0), ([-1.0, -1.0], [2.0, 2.0], 0.0)];
+    let cases =
+        [([3.0, 0.0], [0.0, 3.0], 1.5), ([-0.5, -2.0], [0.25, -2.0], 2.0), ([-1.0, -1.0], [2.0, 2.0], 0.0)];
     for (p, q, expected) in cases {
         let size = screen.least_size_of_segment([p, q].map(|[a, b]| DVec3::new(a, b, 1.0)));
         assert!(size <= expected && size >= expected - 1e3 * screen.slack, "{size} is not {expected}");

@@ -159,6 +159,57 @@ fn a_face_is_left_out_only_beyond_the_bound() {
     assert_eq!([1.01 * steps + 1.0, 2.0 * steps].map(|steps| beside(steps.ceil())), [0; 2]);
 }
 
+/// From far away the rounding of the origin counts, for a small face more than its edges do.
+#[test]
+fn a_small_face_far_away_is_left_out_only_beyond_the_bound() {
+    // In the frame half as large: E = 2^-20. The large faces fill another leaf.
+    let e = f64::from(16.0 * U);
+    let mut corners = vec![[-e, -e, 0.0], [e, -e, 0.0], [-e, e, 0.0]];
+    corners.extend([[1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]);
+    let faces = [[[0, 1, 2]; LEAF_WIDTH], [[3, 4, 5]; LEAF_WIDTH]].concat();
+    let tree = WideTree::of(&Triangles::new(corners, faces).expect("a mesh"));
+    let leaf = tree.leaves.iter().find(|leaf| leaf.ids[0].0 < 4).expect("the leaf of the small faces");
+    assert!(f64::from(leaf.longest) < 1.01 * e, "{}", leaf.longest);
+    let beside = |way: f64| {
+        let ray = CastRay::new(2.0 * DVec3::new(-0.5 * e - way, 0.0, 32768.0), DVec3::NEG_Z);
+        leaf.may_meet(&tree.ray(&ray).expect("a ray that is near"))
+    };
+    // Here the largest part of d x a' is the way x' beside the edge: F = E x', and C = x'.
+    let (u, a) = (f64::from(U), 32769.0);
+    let of_c = 8.0 * u + 16.0 * u * e;
+    let way = ((2.0 * e + 32.0 * u * a) * of_c + 48.0 * u * a * e) / (e - of_c);
+    assert_eq!([0.0, 0.5 * way, 0.98 * way].map(beside), [15; 3]);
+    assert_eq!([1.02 * way, 2.0 * way].map(beside), [0; 2]);
+}
+
+/// The ends of a ray in the frame lie beyond its own, by what the boxes' errors ask for.
+#[test]
+fn the_ends_of_a_ray_in_the_frame_have_room_for_rounding() {
+    let mut random = SplitMix64(9);
+    let mesh = moved_and_scaled(&lattice(), DVec3::ZERO, 3.0).0;
+    let tree = WideTree::of(&mesh);
+    let u = f64::from(U);
+    for _ in 0..1000 {
+        let t_min = 1.0 + random.unit();
+        let ray = CastRay {
+            t_min,
+            t_max: t_min + random.unit(),
+            ..CastRay::new(point(&mut random), point(&mut random))
+        };
+        let per_t = ray.direction.abs().max_element() * tree.frame.scale;
+        let in_frame = tree.ray(&ray).expect("a ray that is near");
+        let [near, far] = [f64::from(in_frame.near), f64::from(in_frame.far)];
+        assert!(
+            near > (1.0 - 20.0 * u) * ray.t_min * per_t && near < (1.0 - 12.0 * u) * ray.t_min * per_t,
+            "{ray:?}"
+        );
+        assert!(
+            far > (1.0 + 12.0 * u) * ray.t_max * per_t && far < (1.0 + 20.0 * u) * ray.t_max * per_t,
+            "{ray:?}"
+        );
+    }
+}
+
 #[test]
 fn every_face_is_in_a_leaf_whatever_their_number() {
     let mut random = SplitMix64(5);

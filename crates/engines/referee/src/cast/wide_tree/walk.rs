@@ -40,8 +40,8 @@ pub(in super::super) struct FrameRay {
     is_down: [bool; 3],
     /// 48 u A and 32 u A.
     pub(super) reach: [f32; 2],
-    near: f32,
-    far: f32,
+    pub(super) near: f32,
+    pub(super) far: f32,
     /// tau per t.
     per_t: f64,
 }
