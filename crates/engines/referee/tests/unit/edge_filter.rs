@@ -92,3 +92,30 @@ fn lines_a_hundred_billionth_of_an_edge_beside_it_are_decided() {
     }
     assert!(decided > 1900, "{decided}");
 }
+
+/// The t of a face lies in its interval, which is narrow unless the line runs along the face.
+#[test]
+fn the_t_of_a_face_is_in_a_narrow_interval() {
+    let mut random = SplitMix64(13);
+    let mut narrow = 0;
+    for _ in 0..2_000 {
+        let Case { origin, direction, corners } = Case::beside_an_edge(&mut random, 0.1);
+        let (origin, direction) = (origin + DVec3::NEG_Z, direction + DVec3::Z);
+        let [a, b, c] = corners.map(Vector::<Dyadic>::of);
+        let normal = b.sub(&a).cross(&c.sub(&a));
+        let height = normal.dot(&a.sub(&Vector::of(origin)));
+        let approach = normal.dot(&Vector::of(direction));
+        let Some(Interval { low, high }) = EdgeFilter::exactly(origin, direction).t_of_plane(corners) else {
+            continue;
+        };
+        // (t - low) and (t - high), times n.d: their signs differ.
+        let [after, before] = [low, high].map(|t| height.sub(&approach.mul(&Dyadic::of(t))).sign());
+        assert!(after.is_some() && after == before.map(Ordering::reverse), "{low} {high}");
+        let cosine = (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(direction).abs();
+        if cosine > 0.1 {
+            assert!(high - low < 1e-11 * (1.0 + high.abs()), "{low} {high}");
+            narrow += 1;
+        }
+    }
+    assert!(narrow > 1000, "{narrow}");
+}

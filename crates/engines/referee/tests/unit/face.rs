@@ -79,3 +79,19 @@ fn the_filter_agrees_with_exact_arithmetic_on_a_million_edges() {
     }
     assert!(certain > 900_000, "the filter decides most: {certain}");
 }
+
+/// A corner that is 2^-80 off a plane is off it, though intervals cannot tell.
+#[test]
+fn a_face_is_in_the_plane_of_another_only_exactly() {
+    let face = |corners: [[f32; 3]; 3]| Face { id: FaceId(0), corners };
+    // The plane z = x + y.
+    let plane = face([[0.0, 0.0, 0.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]]);
+    let off = |y: f32| face([[0.0, 0.0, 0.0], [1.0, y, 1.0], [0.0, 1.0, 1.0]]);
+    let tiny = 1.0 / (1_u128 << 80) as f32;
+    assert_eq!(off(tiny).sides_of_plane::<Interval>(&plane)[1], None);
+    for (y, expected) in [(0.0, true), (tiny, false), (-tiny, false), (0.5, false)] {
+        assert_eq!(off(y).is_in_plane_of(&plane), expected, "{y}");
+    }
+    // Whichever way it faces.
+    assert!(face([[1.0, 1.0, 2.0], [0.0, 0.0, 0.0], [1.0, 0.0, 1.0]]).is_in_plane_of(&plane));
+}
