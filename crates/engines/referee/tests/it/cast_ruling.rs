@@ -153,6 +153,34 @@ fn nobody_sees_through_what_is_too_near_or_misses_it() {
 }
 
 #[test]
+fn a_slit_beside_the_nearest_edge_excuses_a_miss() {
+    // Two plates. Between them is a slit that is less wide than an eighth of what is charged, and not where one looks all around.
+    let precision = Precision::F32;
+    let ray = down(0.5, 0.0);
+    let plates = |most: f64, width: f64| {
+        let [from, to] = [0.7 * most, (0.7 + width) * most];
+        let corners = [
+            [0.0, -1.0],
+            [1.0, -1.0],
+            [1.0, from],
+            [0.0, from],
+            [0.0, to],
+            [1.0, to],
+            [1.0, 1.0],
+            [0.0, 1.0],
+        ];
+        let faces = vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]];
+        Triangles::new(corners.iter().map(|&[x, y]| [x, y, 0.0]).collect(), faces).unwrap()
+    };
+    let most = ExactCast::new(&plates(0.0, 0.0)).lateral_error(&ray, precision);
+    for (width, is_excused) in [(0.1, true), (0.0, false)] {
+        let mesh = plates(most, width);
+        let ruling = ExactCast::new(&mesh).rule(&ray, Sides::Both, Reading::Miss, precision);
+        assert_eq!(is_rounding(ruling), is_excused, "{width}: {ruling:?}");
+    }
+}
+
+#[test]
 fn the_shortest_range_is_as_uncertain_as_ranges() {
     let mesh = squares(&[0.0, -1.0]);
     let blind = |t_blind: f64| CastRay { t_blind, ..down(0.75, 0.25) };
