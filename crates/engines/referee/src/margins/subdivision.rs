@@ -141,6 +141,19 @@ mod tests {
     }
 
     #[test]
+    fn parts_are_divided_down_to_the_smallest_half_side() {
+        let (point, mut smallest) = ([-0.3, 0.6], 1.0_f64);
+        subdivide(0.0, None, |square, _| {
+            let is_unproven = apart(square, point) <= 0.0;
+            is_unproven.then(|| {
+                smallest = smallest.min(square.half);
+                None
+            })
+        });
+        assert_eq!(smallest, 0.5 * MIN_HALF_SIDE_CELLS);
+    }
+
+    #[test]
     fn nothing_to_be_found_is_the_cap() {
         assert_eq!(margin(|_| false, |square| square.half <= 0.25), (1.0, None));
     }

@@ -206,3 +206,20 @@ fn errors_of_roots_and_quotients_are_what_multiplying_back_leaves() {
         assert_eq!(x.over(&three).error, rest.upper_bound() / three.lower_bound() * ROUNDED_UP);
     }
 }
+
+/// A sign is that of the number, and not known if its error reaches 0. An exact number has one, whether it is one f64 or two.
+#[test]
+fn signs_are_those_of_all_that_the_number_may_be() {
+    let of = |high: f64, low: f64, error: f64| DoubleDouble { high, low, error };
+    for high in [1.0, 3.0, 1e-300] {
+        let low = 0.5 * f64::EPSILON * high;
+        for number in [of(high, 0.0, 0.0), of(high, -low, 0.0), of(high, low, 0.0), of(high, 0.0, 0.9 * high)]
+        {
+            assert_eq!(number.sign(), Some(Ordering::Greater), "{number:?}");
+            assert_eq!(DoubleDouble::of(0.0).sub(&number).sign(), Some(Ordering::Less), "{number:?}");
+        }
+        assert_eq!(of(high, 0.0, high).sign(), None);
+    }
+    assert_eq!(DoubleDouble::of(0.0).sign(), Some(Ordering::Equal));
+    assert_eq!(of(0.0, 0.0, 1e-300).sign(), None);
+}
