@@ -61,3 +61,16 @@ pub struct Explained {
     /// All reasons that hold; at least one.
     pub reasons: Vec<Reason>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_straight_sides_belong_to_beam_edges() {
+        assert!(Reason::StraightSide.belongs_to_beam_edges());
+        for of_rules in [Reason::FacingOfMiddle, Reason::VerticesTooFar, Reason::SidesApart] {
+            assert!(!of_rules.belongs_to_beam_edges());
+        }
+    }
+}
