@@ -95,3 +95,23 @@ fn a_face_is_in_the_plane_of_another_only_exactly() {
     // Whichever way it faces.
     assert!(face([[1.0, 1.0, 2.0], [0.0, 0.0, 0.0], [1.0, 0.0, 1.0]]).is_in_plane_of(&plane));
 }
+
+/// Where n.D may be 0, of either sign, the range has no bound but the sensor's.
+#[test]
+fn the_farthest_range_is_bounded_where_the_approach_is_not() {
+    let [camera, _] = sensors(&mut SplitMix64(8));
+    let ray = ExactRay::new(&camera, Aim { i: 3, j: 4, dx: 0.0, dy: 0.0 });
+    let of = |low: f64, high: f64| {
+        let approach = Interval { low, high };
+        Crossing { normal: Vector::of(DVec3::Z), height: Interval::of(-1.0), approach }
+            .farthest_range(&ray, 20.0)
+    };
+    for high in [0.0, -0.0, 1.0, f64::NAN, -1e-300] {
+        assert_eq!(of(-2.0, high), 20.0, "{high}");
+    }
+    // R = n.a' |D| / (s n.D), by its bounds.
+    let (length, scale) =
+        (ray.fast.direction.length_squared().middle().sqrt(), ray.fast.origin_scale.middle());
+    let range = length / (1e6 * scale);
+    assert!(range <= of(-2e6, -1e6) && of(-2e6, -1e6) < range * (1.0 + 1e-12));
+}
