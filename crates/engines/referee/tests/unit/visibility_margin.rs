@@ -8,8 +8,10 @@ use raypencil_scene::{
 };
 
 use super::*;
+use crate::hits::face::ExactRay;
 use crate::hits::ruling::{Ruling, Tolerance};
 use crate::rays::displacement::Displacement;
+use crate::visibility::line_of_sight::ExactLineOfSight;
 
 fn face(corners: [[f32; 3]; 3]) -> Face {
     Face { id: FaceId(0), corners }
@@ -162,6 +164,20 @@ fn the_ways_to_what_is_hit_are_a_narrow_bundle() {
     assert!((bundle.direction + eye / length).length() < 1e-12, "{}", bundle.direction);
     assert!((bundle.max_range - (length + radius)).abs() < 1e-6, "{}", bundle.max_range);
     assert!((bundle.spread - radius / (length - radius)).abs() < 1e-6, "{}", bundle.spread);
+}
+
+/// The way of one point is a line as long as it, in units of its length.
+#[test]
+fn the_way_to_a_point_ends_there() {
+    let scene = level(4.0, 0.0625, 0.25);
+    let referee = Referee::new(&scene);
+    let sensor = MountedSensor::of(&scene, SensorId::Beam(0)).expect("a beam");
+    let ray = ExactRay::new(&sensor, Aim { i: 1, j: 1, dx: 0.0, dy: 0.0 });
+    let ground = Face::of(referee.scene.mesh(), FaceId(0));
+    let bundle = ExactLineOfSight::new(&ray, &ground, scene.camera()).bundle();
+    assert!((bundle.direction.length() - 1.0).abs() < 1e-12, "{}", bundle.direction);
+    let end = bundle.origin + bundle.direction * bundle.max_range;
+    assert!(end.length() < 1e-12 && bundle.start_radius == 0.0 && bundle.spread == 0.0, "{bundle:?}");
 }
 
 /// Two thirds of a lid 1 m above the ground, whose two faces meet along a line from its middle to the left. The
