@@ -181,6 +181,26 @@ fn a_slit_beside_the_nearest_edge_excuses_a_miss() {
 }
 
 #[test]
+fn a_speck_beside_the_ray_may_be_hit_if_it_is_within_what_is_charged() {
+    let precision = Precision::F32;
+    let ray = down(0.5, 0.0);
+    let speck = |most: f64, near: f64| {
+        let corners = [[-0.05, near], [0.05, near], [0.0, near + 0.1]];
+        let corners = corners.map(|[x, y]| [0.5 + x * most, y * most, 0.0]);
+        // The others only keep all sizes.
+        let around = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [-1.0, -0.5, 0.0]];
+        Triangles::new([corners, around].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap()
+    };
+    let most = ExactCast::new(&speck(1e-6, 0.0)).lateral_error(&ray, precision);
+    // It is not where one looks all around.
+    for (near, is_excused) in [(0.7, true), (-0.85, true), (1.01, false)] {
+        let mesh = speck(most, near);
+        let ruling = ExactCast::new(&mesh).rule(&ray, Sides::Both, Reading::Hit(FaceId(0)), precision);
+        assert_eq!(is_rounding(ruling), is_excused, "{near}: {ruling:?}");
+    }
+}
+
+#[test]
 fn the_shortest_range_is_as_uncertain_as_ranges() {
     let mesh = squares(&[0.0, -1.0]);
     let blind = |t_blind: f64| CastRay { t_blind, ..down(0.75, 0.25) };

@@ -393,3 +393,21 @@ fn the_ranges_of_the_ends_of_a_ray_have_room_for_rounding() {
         assert!(sign(greatest, -1.0, ray.t_max).is_gt(), "{ray:?}");
     }
 }
+
+/// A vertex is shown where it is, whatever its coordinates are rounded to.
+#[test]
+fn what_may_be_shown_has_room_for_rounding() {
+    let mut random = SplitMix64(13);
+    for _ in 0..1000 {
+        let origin = point(&mut random);
+        let mut size = [1e-3; 3];
+        size[random.below(3) as usize] = 1e3;
+        let vertex = point(&mut random) * DVec3::from_array(size);
+        let ray = CastRay::new(origin, point(&mut random));
+        let frame = Frame::new(&ray);
+        let at = frame.displacement_to(vertex).to_array();
+        assert!(frame.may_show(&[vertex; 3], at, 0.0), "{vertex} by {ray:?}");
+        // And hardly beside it.
+        assert!(!frame.may_show(&[vertex; 3], [at[0] + 1e-9, at[1]], 0.0), "{vertex} by {ray:?}");
+    }
+}
