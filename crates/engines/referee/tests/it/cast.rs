@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 use proptest::prelude::*;
-use raypencil_referee::{ExactCast, HitGroup, Referee, SidedFace};
+use raypencil_referee::{DecidedBy, ExactCast, HitGroup, Referee, SidedFace};
 use raypencil_scene::{
     Atmosphere, CastRay, FaceId, FluxModel, Mesh, Mounted, Pose, Reading, Scene, SensorId, Side, Sides,
     Triangles, rig,
@@ -26,6 +26,17 @@ fn cube() -> Triangles {
 
 fn faces(group: &HitGroup) -> Vec<(u32, Side)> {
     group.faces.iter().map(|met| (met.face.0, met.side)).collect()
+}
+
+#[test]
+fn exact_numbers_decide_on_an_edge_and_the_filter_within() {
+    let cube = cube();
+    let beside = |y: f64| CastRay::new(DVec3::new(0.5, y, 5.0), DVec3::NEG_Z);
+    // The top is cut from (0, 0) to (2, 2).
+    let rays = [beside(0.25), beside(0.5), beside(3.0)];
+    let mut decided = [None; 3];
+    ExactCast::new(&cube).first_meetings(&rays, Sides::Fronts, |k, _, by| decided[k] = Some(by));
+    assert_eq!(decided, [DecidedBy::Filter, DecidedBy::Exact, DecidedBy::Filter].map(Some));
 }
 
 #[test]
