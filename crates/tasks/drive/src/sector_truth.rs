@@ -298,8 +298,8 @@ impl SectorTruth {
                 count(self.clear),
             ),
             format!(
-                "{} pass a true obstacle: {} miss one that stripes swept, {} pass one measured in part, {} pass one that \
-                 could not be seen",
+                "{} pass a true obstacle: {} miss one that stripes swept, {} one measured in part, {} one that could \
+                 not be seen",
                 count(self.passed()),
                 count(missed.all()),
                 count(not_found.in_part),

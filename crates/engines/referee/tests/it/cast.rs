@@ -498,3 +498,18 @@ fn rays_from_the_middle_of_a_room_meet_all_faces_of_a_corner() {
         assert_eq!(cast.first_values(&ray, Sides::Both).unwrap().t.double, 1.0);
     }
 }
+
+/// A t below every double, of a range that is a common one: each is rounded by itself.
+#[test]
+fn a_range_is_right_where_its_t_is_too_small_for_a_double() {
+    let corners = vec![[-1.0, -1.0, 1e-300], [1.0, -1.0, 1e-300], [0.0, 1.0, 1e-300]];
+    let mesh = Triangles::new(corners, vec![[0, 1, 2]]).unwrap();
+    let exact = ExactCast::new(&mesh);
+    for size in [1.0, 1e10, 1e23, 1e24, 1e30] {
+        let ray = CastRay::new(DVec3::ZERO, DVec3::new(0.0, 0.0, size));
+        let hit = exact.values(&ray, FaceId(0)).expect("a hit");
+        assert_eq!(hit.t.double, if size > 1e23 { 0.0 } else { 1e-300 / size }, "{size}");
+        // 1e-300 / size times size, which is 1e-300.
+        assert_eq!((hit.range.double, hit.point[2].double), (1e-300, 1e-300), "{size}");
+    }
+}

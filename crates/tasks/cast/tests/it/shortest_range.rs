@@ -259,6 +259,17 @@ fn minus_infinity_is_no_miss_unless_it_is_declared() {
     let swapped = Folders::right().change("t", to_near).change("range", to_near);
     let declared = CandidateConventions { miss: Some(f64::NEG_INFINITY), ..Default::default() };
     assert_eq!(swapped.check_with(declared).comparison.counts().wrong, 16);
+    // One miss that says it beside others that say +Inf is no such program: who declared -Inf would have 16 rays more wrong.
+    let one = |folders: Folders, name: &str| {
+        let is_first = std::cell::Cell::new(true);
+        folders.change(name, |t| match t == f64::INFINITY && is_first.replace(false) {
+            true => f64::NEG_INFINITY,
+            false => t,
+        })
+    };
+    let single = one(one(Folders::right(), "t"), "range").check();
+    assert_eq!(single.comparison.counts().wrong, 1);
+    assert!(single.why.is_none_or(|why| !why.contains("--miss")), "a false reason");
     // One of two arrays that say it is a contradiction.
     let half = Folders::right().change("t", |t| if t == f64::NEG_INFINITY { f64::INFINITY } else { t });
     half.expect_wrong(16, "one of t and range is -Inf, too near, and the other is not", "");

@@ -136,7 +136,7 @@ fn clear_beyond_it_by_more_than_a_step_is_missed_if_stripes_swept_it() {
     assert_eq!(in_part.not_found, NotFound { in_part: 1, ..NotFound::default() });
     assert_eq!((in_part.missed.all(), in_part.passed()), (0, 1));
     let said = in_part.sentences();
-    let words = "1 pass a true obstacle: 0 miss one that stripes swept, 1 pass one measured in part, 0 pass one that could not be seen";
+    let words = "1 pass a true obstacle: 0 miss one that stripes swept, 1 one measured in part, 0 one that could not be seen";
     assert_eq!(said[1], words);
     assert!(said[2].ends_with("measured in part 1; not seen: hidden 0, not swept 0, outside 0"), "{said:?}");
     // Clear up to 2.6 m truly; the bound's sentence has all its counts.
