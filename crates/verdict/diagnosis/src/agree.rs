@@ -7,7 +7,6 @@ use raypencil_scene::{HitQuantity, Place};
 
 use crate::case::Case;
 use crate::channel::{Channel, Value};
-use crate::correction::{Correction, before_rounding};
 use crate::numbers::middle;
 
 /// Relative difference of values that count as equal while corrections are tried. Tuned: single precision leaves less
@@ -58,7 +57,7 @@ fn step(case: Case<'_>, channel: Channel) -> f64 {
 }
 
 /// The absolute tolerance for a number.
-fn of_number(case: Case<'_>, channel: Channel, exact: f64) -> f64 {
+pub(crate) fn of_number(case: Case<'_>, channel: Channel, exact: f64) -> f64 {
     let is_cosine =
         matches!(channel.item.quantity, Quantity::CosIncidence | Quantity::CosOffAxis | Quantity::CosView);
     let scale = if is_cosine { 1.0 } else { exact.abs() };
@@ -80,30 +79,6 @@ pub(crate) fn is_near(case: Case<'_>, channel: Channel, place: Place, stated: Va
             (stated - exact).length() <= tolerance * scale
         }
         (stated, exact) => stated == exact,
-    }
-}
-
-/// Whether the value that some corrections make is near: what the file rounds grows and shrinks with the number.
-pub(crate) fn is_near_after(
-    case: Case<'_>,
-    channel: Channel,
-    place: Place,
-    corrections: &[&Correction],
-    [value, exact]: [Value; 2],
-) -> bool {
-    let (Value::Number(number), Value::Number(own)) = (value, exact) else {
-        return is_near(case, channel, place, value, exact);
-    };
-    let near = |allowed: [f64; 2]| {
-        let slack = of_number(case, channel, own);
-        (allowed[0] - slack..=allowed[1] + slack).contains(&own)
-    };
-    let rounded = || before_rounding(case, channel, place, corrections, 1.0);
-    match case.recorded.storage.get(&(channel.sensor, channel.item)) {
-        // A whole step, where half of it is rounded away; and the smallest numbers of half precision have fewer digits than its tolerance
-        // takes for granted.
-        Some(Storage::Steps(_) | Storage::F16) => near([number; 2]) || rounded().is_some_and(near),
-        _ => near([number; 2]),
     }
 }
 

@@ -58,6 +58,7 @@
 //! correction     what undoes a mistake
 //! forward        what a mistake that nothing undoes makes of an exact value
 //! agree          values that are near enough to be tried further
+//! agree_after    the same after some corrections
 //! sample         the rays on which mistakes are tried
 //! tally          what a reason explains and breaks, and when that is enough
 //! trial          what a correction leaves off, and which channels it helps
@@ -77,6 +78,7 @@
 //! ```
 
 mod agree;
+mod agree_after;
 mod calibrate;
 mod case;
 mod cast;

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use raypencil_scene::Place;
 
-use crate::agree::is_near_after;
+use crate::agree_after::is_near_after;
 use crate::case::Case;
 use crate::channel::{Channel, Value};
 use crate::correction::{Correction, corrected};

@@ -13,7 +13,7 @@ use super::candidate::{CandidateConventions, read_candidate};
 use super::clouds::{BeamQuestion, CloudCase, CloudFacts, is_cloud, of_cloud, read_cloud_of};
 use super::decimals::decimals;
 use super::explain::explain;
-use super::kept_answers::refuse_other_answers;
+use super::kept_answers::{MAX_COUNTED, refuse_other_answers};
 use super::lengths::lengths;
 use super::mistakes::OfArrays;
 use super::read::RayPack;
@@ -215,9 +215,6 @@ pub fn check_ray_pack(
     let checked = judged.checked(asked_by, (rays, sides), (name, stated), (Some(mesh), scan));
     Ok(RayPackChecked { unread: unread(candidate), ..checked })
 }
-
-/// Most rays of a pack whose backs, limits and lengths are counted again. Tuned: a second or two on two cores.
-pub(super) const MAX_COUNTED: usize = 200_000;
 
 /// Refuses counts of rays that are not those of the pack. Those of a large pack are compared as far as they follow from its first hits.
 fn refuse_other_counts(

@@ -7,8 +7,10 @@ use raypencil_files::{Fault, FileError, Limits, Numbers, RayArray, read_npy_numb
 use raypencil_referee::ExactCast;
 use raypencil_scene::{CastRay, Progress, Sides};
 
-use super::check::MAX_COUNTED;
 use crate::answers::{AllColumns, Answers, FirstHit, Questions, cast_beside_first, side_number};
+
+/// Most rays of a pack whose backs, limits and lengths are counted again, and all hits computed. Tuned: a second or two on two cores.
+pub(super) const MAX_COUNTED: usize = 200_000;
 
 /// Rays whose margins are computed again, at most, one of so many each. Tuned: a part of what the rays themselves take.
 const MAX_MARGINS: usize = 40;

@@ -10,7 +10,8 @@ use raypencil_report::{DefectLine, Document, count, counted};
 use raypencil_scene::{FaceId, Reading};
 use serde_json::Map;
 
-use super::check::{MAX_COUNTED, RayPackChecked};
+use super::check::RayPackChecked;
+use super::kept_answers::MAX_COUNTED;
 use crate::comparison::{RayVerdict, Wrong, wrong_text};
 use crate::page::{CastPage, ComparedHits};
 use crate::text::counts_text;

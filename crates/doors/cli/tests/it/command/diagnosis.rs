@@ -116,21 +116,24 @@ fn negative_depths_are_refused_with_the_remedy() {
 fn pixels_outside_the_image_are_refused_with_the_remedy() {
     let stated = |change: &dyn Fn(u32, u32) -> (u32, u32)| {
         let folder = folder("pyramids");
-        edit(&folder, "beam-0.exr", |map| {
-            let [columns, rows] = ["pixel.I", "pixel.J"].map(|name| {
-                let Some(Raster::U32(image)) = map.channels.get(name) else { panic!("no {name}") };
-                image.clone()
-            });
-            for (name, is_row) in [("pixel.I", false), ("pixel.J", true)] {
-                let Some(Raster::U32(image)) = map.channels.get_mut(name) else { panic!("no {name}") };
-                let pairs = columns.cells().iter().zip(rows.cells());
-                for (cell, (i, j)) in
-                    image.cells_mut().iter_mut().zip(pairs).filter(|(_, (i, _))| **i != u32::MAX)
-                {
-                    let (column, row) = change(*i, *j);
-                    *cell = if is_row { row } else { column };
+        // Each beam of the program: others that count otherwise would say that it is no rule of it.
+        (0..9).map(|beam| format!("beam-{beam}.exr")).for_each(|beam| {
+            edit(&folder, &beam, |map| {
+                let [columns, rows] = ["pixel.I", "pixel.J"].map(|name| {
+                    let Some(Raster::U32(image)) = map.channels.get(name) else { panic!("no {name}") };
+                    image.clone()
+                });
+                for (name, is_row) in [("pixel.I", false), ("pixel.J", true)] {
+                    let Some(Raster::U32(image)) = map.channels.get_mut(name) else { panic!("no {name}") };
+                    let pairs = columns.cells().iter().zip(rows.cells());
+                    for (cell, (i, j)) in
+                        image.cells_mut().iter_mut().zip(pairs).filter(|(_, (i, _))| **i != u32::MAX)
+                    {
+                        let (column, row) = change(*i, *j);
+                        *cell = if is_row { row } else { column };
+                    }
                 }
-            }
+            })
         });
         check(folder.path(), "pyramids", &[])
     };
