@@ -152,7 +152,11 @@ pub fn camera_info_from_text(
         let words = words
             .replace("invalid floating point", "this is no number")
             .replace("invalid integer", "this is no whole number")
-            .replace("missing field", "there is no");
+            .replace("missing field", "there is no")
+            .replace("duplicate field ", "expected once, but found again: ")
+            .replace("duplicate mapping key: ", "expected once, but found again: ")
+            // What a program may set that uses the library.
+            .replace(", set DuplicateKeyPolicy in Options if acceptable", "");
         source.error(place, format!("no calibration of a camera in YAML: {words}"))
     })?;
     let Some((keys, others)) = messages.split_first() else {
@@ -391,6 +395,10 @@ mod tests {
             (
                 message("- 600.0\n", "- north\n"),
                 "left.yaml:16:3: no calibration of a camera in YAML: this is no number",
+            ),
+            (
+                message("width: 640\n", "width: 640\nimage_width: 320\n"),
+                "no calibration of a camera in YAML: expected once, but found again: `image_width`",
             ),
             (message("width: 640\n", ""), "no calibration of a camera in YAML: there is no `image_width`"),
             (message("- 1.0\nr:", "- 2.0\nr:"), "a camera without skew"),

@@ -128,7 +128,13 @@ fn read(text: &str) -> Result<Vec<TimedPose>, Fault> {
             }
             continue;
         }
-        if comment.is_some() || line.trim().is_empty() {
+        if let Some(comment) = comment {
+            if let Some(found) = other_order(comment) {
+                return refuse(found, format!("columns in the order {ORDER}"));
+            }
+            continue;
+        }
+        if line.trim().is_empty() {
             continue;
         }
         if fields.len() != 8 {
@@ -150,6 +156,26 @@ fn read(text: &str) -> Result<Vec<TimedPose>, Fault> {
         return Err(Fault::new("file", "no pose", format!("rows of {ORDER}")));
     }
     Ok(poses)
+}
+
+/// What a comment that is no heading of eight names says of columns in another order, or of times in another unit: all four parts of the
+/// quaternion stand in it, the scalar first, or beside nanoseconds.
+fn other_order(comment: &str) -> Option<String> {
+    let words: Vec<String> = comment
+        .split(|c: char| !(c.is_alphanumeric() || c == '_'))
+        .filter(|word| !word.is_empty())
+        .map(str::to_lowercase)
+        .collect();
+    let place = |part: &str| {
+        let names = [format!("q{part}"), format!("q_{part}")];
+        words.iter().position(|word| names.contains(word))
+    };
+    let [x, y, z, w] = ["x", "y", "z", "w"].map(place);
+    let (Some(x), Some(y), Some(z), Some(w)) = (x, y, z, w) else { return None };
+    let is_in_order = x < y && y < z && z < w;
+    let has_other_unit =
+        words.iter().any(|word| ["ns", "ms", "us", "nanoseconds", "milliseconds"].contains(&word.as_str()));
+    (!is_in_order || has_other_unit).then(|| comment.trim().to_string())
 }
 
 /// A pose of eight numbers after the pose `before`; what is wrong with it, and what is expected.
@@ -248,6 +274,7 @@ mod tests {
             "# ground truth trajectory",
             "#timestamp [s],x,y,z,ox,oy,oz,ow",
             "# t [s] x [m] y [m] z [m] qx qy qz qw",
+            "# columns: timestamp tx ty tz qx qy qz qw",
         ] {
             let rows =
                 format!("{heading}\n\n{}", ROW.replace(' ', if heading.contains(',') { "," } else { "\t" }));
@@ -261,6 +288,8 @@ mod tests {
             "# timestamp tx ty tz qw qx qy qz",
             "#timestamp [ns],p_x,p_y,p_z,q_x,q_y,q_z,q_w",
             "# timestamp [ns] x y z qx qy qz qw",
+            "# columns: timestamp tx ty tz qw qx qy qz",
+            "# time in nanoseconds, position, and the quaternion as q_x q_y q_z q_w",
             "time_s,x_mm,y_mm,z_mm,qx,qy,qz,qw",
             "time,qx,qy,qz,qw,x,y,z",
         ] {

@@ -224,7 +224,8 @@ impl Reader<'_> {
     /// have moved those of each ray.
     fn numbers(&self, name: &str, last: &[u64]) -> Result<Stored<f64>, FileError> {
         let path = self.folder.join(format!("{name}.npy"));
-        if !path.exists() {
+        // A link that leads nowhere is a fault, and no array that was left out.
+        if path.symlink_metadata().is_err() {
             return Ok((None, None));
         }
         let array = read_npy_numbers(&path, &Limits::default())?;

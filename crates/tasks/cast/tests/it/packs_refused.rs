@@ -223,3 +223,15 @@ fn a_changed_pack_and_arrays_of_another_shape_are_refused() {
         assert!(refused(&folders).contains(expected), "{}", refused(&folders));
     }
 }
+
+/// A link that leads nowhere is no array that was left out.
+#[cfg(unix)]
+#[test]
+fn a_link_to_nothing_is_refused() {
+    let folders = Folders::right();
+    let link = folders.candidate.path().join("t.npy");
+    std::fs::remove_file(&link).unwrap();
+    assert!(folders.check().passes(), "without t the others are judged");
+    std::os::unix::fs::symlink("/nowhere", &link).unwrap();
+    assert!(refused(&folders).contains("t.npy: cannot read"), "{}", refused(&folders));
+}

@@ -144,11 +144,17 @@ fn map_unit(
         }
         _ => {}
     }
-    let is_map = keys.short(Key::MODEL_TYPE) == Some(1) || keys.short(Key::PROJECTED).is_some();
-    if let Some(geodetic) = keys.short(Key::GEODETIC).filter(|_| !is_map) {
-        let found = format!("missing, while {} is {geodetic}", Key::GEODETIC.name());
+    // Of a file that says it is a map, but names no projection and a system in degrees, one of the two is wrong.
+    let is_projected =
+        [Key::PROJECTED, Key::PROJECTION, Key::TRANSFORM].iter().any(|key| keys.short(*key).is_some());
+    if let Some(geodetic) = keys.short(Key::GEODETIC).filter(|_| !is_projected) {
+        let model = keys.short(Key::MODEL_TYPE).map_or("missing".into(), |model| match model {
+            USER_DEFINED => format!("{USER_DEFINED}, of another kind"),
+            model => format!("{model}, without a projection"),
+        });
+        let found = format!("{model}, while {} is {geodetic}", Key::GEODETIC.name());
         let expected = format!(
-            "1, a map: if coordinates are degrees, project the model (gdalwarp -t_srs), else say {option}"
+            "1, a map, and its projection: if coordinates are degrees, project the model (gdalwarp -t_srs), else say {option}"
         );
         return Err(Key::MODEL_TYPE.fault(found, expected));
     }

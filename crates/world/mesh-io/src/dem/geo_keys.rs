@@ -30,6 +30,8 @@ impl Key {
     pub const GEODETIC_CITATION: Self = Self(2049);
     pub const GEODETIC_UNIT: Self = Self(2052);
     pub const PROJECTED: Self = Self(3072);
+    pub const PROJECTION: Self = Self(3074);
+    pub const TRANSFORM: Self = Self(3075);
     pub const PROJECTED_CITATION: Self = Self(3073);
     pub const PROJECTED_UNIT: Self = Self(3076);
     pub const PROJECTED_UNIT_SIZE: Self = Self(3077);
@@ -47,6 +49,8 @@ impl Key {
             Self::GEODETIC_CITATION => "GeogCitationGeoKey",
             Self::GEODETIC_UNIT => "GeogLinearUnitsGeoKey",
             Self::PROJECTED => "ProjectedCSTypeGeoKey",
+            Self::PROJECTION => "ProjectionGeoKey",
+            Self::TRANSFORM => "ProjCoordTransGeoKey",
             Self::PROJECTED_CITATION => "PCSCitationGeoKey",
             Self::PROJECTED_UNIT => "ProjLinearUnitsGeoKey",
             Self::PROJECTED_UNIT_SIZE => "ProjLinearUnitSizeGeoKey",

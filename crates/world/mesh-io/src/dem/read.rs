@@ -26,6 +26,9 @@ const MAX_CELLS: u64 = 1 << 24;
 /// Maximum number of images of a file that are examined. All but the first are overviews or masks.
 const MAX_IMAGES: usize = 64;
 
+/// Bit of NewSubfileType that marks an image as a smaller one of another. (TIFF 6.0, page 36)
+const REDUCED_FLAG: u64 = 1;
+
 /// Bit of NewSubfileType that marks an image as a mask. (TIFF 6.0, page 36)
 const MASK_FLAG: u64 = 4;
 
@@ -134,7 +137,7 @@ fn read(path: &Path, mut file: impl Read + Seek, length: u64, options: &DemOptio
     let given = GivenUnits { map: options.unit, heights: options.z_unit };
     let Georeference { placement, registration, systems: [map, vertical], nodata } =
         georeference::read(&tags, &mut file, given)?;
-    refuse_masks(&tags, &mut file)?;
+    refuse_other_images(&tags, &mut file)?;
 
     let lattice = Lattice::new(placement, [blocks.width, blocks.height]);
     let [columns, rows] = lattice.within(window)?;
@@ -191,9 +194,14 @@ fn read(path: &Path, mut file: impl Read + Seek, length: u64, options: &DemOptio
     Ok(Dem { file, posts, registration, map, heights: vertical, nodata, given_nodata, unknown })
 }
 
-/// Refuses a file with a mask, a second image that marks unknown posts: their samples would be taken for heights.
-fn refuse_masks(tags: &Tags, file: &mut (impl Read + Seek)) -> Result<(), Fault> {
+/// Refuses a file with a mask, a second image that marks unknown posts: their samples would be taken for heights. And one whose first image
+/// of several is a reduced one: the model stands behind it.
+fn refuse_other_images(tags: &Tags, file: &mut (impl Read + Seek)) -> Result<(), Fault> {
     let mut next = tags.next;
+    if next != 0 && tags.integer(file, 254)?.unwrap_or(0) & REDUCED_FLAG != 0 {
+        let expected = "the model itself, and smaller images of it behind it";
+        return Err(Fault::new("image 0", "a smaller image of another one (NewSubfileType 1)", expected));
+    }
     for image in 1..MAX_IMAGES {
         if next == 0 {
             break;

@@ -271,6 +271,12 @@ fn angles_of_a_file_are_rays_with_times() {
             "",
             "line 2: a heading with zenith; expected elevation, as the rows before it have",
         ),
+        // Names of more columns than there are.
+        (
+            "# time, azimuth, zenith, line\n0,30,80\n",
+            "",
+            "line 1: time,azimuth,zenith,line; expected columns in the order",
+        ),
         ("0,90,0\n# time,azimuth,phi\n1,90,0\n", "", "line 2: time,azimuth,phi; expected columns"),
         ("0,90,91\n", "", "line 1: field 3: \"91\"; expected -90 to 90, as time, azimuth, elevation"),
         ("0,1,2\n0,nan,2\n", "", "line 2: field 2: \"nan\"; expected -360 to 360"),

@@ -114,6 +114,32 @@ fn a_mask_is_refused() {
     }
 }
 
+#[test]
+fn a_smaller_image_before_the_model_is_refused() {
+    for (kind, is_refused) in [(1_u16, true), (0, false), (2, false)] {
+        for is_followed in [true, false] {
+            let mut bytes = Tiff::plain().tag(254, Short(vec![kind])).bytes();
+            if is_followed {
+                let at = bytes.len() as u32;
+                let pointer = bytes.len() - 4;
+                bytes[pointer..].copy_from_slice(&at.to_le_bytes());
+                bytes.extend([1, 0, 254, 0, 3, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
+            }
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("thumbnail.tif");
+            std::fs::write(&path, bytes).unwrap();
+            // By itself it is what the file has.
+            match read_dem(&path, None) {
+                Ok(_) => assert!(!is_refused || !is_followed, "{kind}"),
+                Err(error) => {
+                    assert!(is_refused && is_followed, "{kind}: {error}");
+                    assert_names(&error.to_string(), &["image 0: a smaller image of another one"]);
+                }
+            }
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..Default::default() })]
 

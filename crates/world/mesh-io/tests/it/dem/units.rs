@@ -139,6 +139,8 @@ fn what_is_in_metres_is_read_as_it_is() {
             UnitSource::Key,
         ),
         (vec![(1026, Name("yard")), (3076, Number(9001))], UnitSource::Key),
+        // A projection of the file's own, without a code.
+        (vec![(1024, Number(1)), (2048, Number(4326)), (3075, Number(17))], UnitSource::Default),
     ] {
         let dem = read(&file(&keys), None).unwrap_or_else(|error| panic!("{error}"));
         assert_scaled(&dem, 1.0, 1.0);
@@ -240,6 +242,21 @@ fn what_is_not_known_is_refused_with_the_remedy() {
             ["missing, while key 2052 GeogLinearUnitsGeoKey is US survey foot", map],
         ),
         (vec![(2048, Number(4326))], ["missing, while key 2048 GeographicTypeGeoKey is 4326", "degrees"]),
+        // A map without a projection is none; the key is there, and is not told as missing.
+        (
+            vec![(1024, Number(1)), (2048, Number(4326))],
+            [
+                "GTModelTypeGeoKey: 1, without a projection, while key 2048 GeographicTypeGeoKey is 4326",
+                "degrees",
+            ],
+        ),
+        (
+            vec![(1024, Number(32767)), (2048, Number(4326))],
+            [
+                "GTModelTypeGeoKey: 32767, of another kind, while key 2048 GeographicTypeGeoKey is 4326",
+                "degrees",
+            ],
+        ),
         (
             vec![(1026, Name("Texas South Central (ftUS)")), (3072, Number(32767))],
             ["no unit, while the name \"Texas South Central (ftUS)\" says \"ftUS\"", map],

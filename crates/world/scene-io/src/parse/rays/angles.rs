@@ -15,6 +15,9 @@ use crate::parse::source::Source;
 use crate::scene_error::SceneIoError;
 use crate::trajectory::TIME_S;
 
+/// Names of a heading that has too many, at most.
+const MAX_HEADING: usize = 16;
+
 /// The order of the numbers in a row.
 const ORDER: &str = "time, azimuth, elevation: seconds, degrees to the left of x, degrees up";
 
@@ -172,6 +175,12 @@ fn rows(bytes: &[u8]) -> Result<Vec<[f64; 3]>, Fault> {
                     return Err(Fault::new(format!("line {number}"), found, expected));
                 }
                 is_zenith = is_of_zeniths;
+            } else if line.contains([',', ';'])
+                && let Some(words) = heading_in_comment(line, 4..=MAX_HEADING, is_name)
+            {
+                // Names of more columns than rows have: not all of them mean what is read.
+                let expected = format!("columns in the order {ORDER}, or zenith: degrees from straight up");
+                return Err(Fault::new(format!("line {number}"), words.join(","), expected));
             }
             continue;
         }
