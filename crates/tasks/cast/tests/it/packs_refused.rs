@@ -233,5 +233,8 @@ fn a_link_to_nothing_is_refused() {
     std::fs::remove_file(&link).unwrap();
     assert!(folders.check().passes(), "without t the others are judged");
     std::os::unix::fs::symlink("/nowhere", &link).unwrap();
-    assert!(refused(&folders).contains("t.npy: cannot read"), "{}", refused(&folders));
+    let (pack, candidate): (&Path, &Path) = (folders.pack.path(), folders.candidate.path());
+    let refused = check_ray_pack(pack, candidate, Precision::F64, CandidateConventions::default(), &Silent);
+    let message = refused.unwrap_err().to_string();
+    assert!(message.contains("t.npy: cannot read"), "{message}");
 }

@@ -495,7 +495,13 @@ fn declare_miss(value: f64, storage: Storage) -> String {
         _ => value,
     };
     let word = if value.is_nan() { "nan".to_string() } else { value.to_string() };
-    format!("if {word} means \"no hit\" in this recording, declare --miss {word}")
+    // Not every command that reads recordings has the option; and JSON has no infinite number.
+    let in_note = match value {
+        value if value.is_nan() => ", or \"miss\": \"nan\" in its candidate.json".to_string(),
+        value if value.is_finite() => format!(", or \"miss\": {word} in its candidate.json"),
+        _ => String::new(),
+    };
+    format!("if {word} means \"no hit\" in this recording, declare --miss {word} to check{in_note}")
 }
 
 /// The same, with numbers of any sign: a point may lie behind the camera.
@@ -514,7 +520,8 @@ fn maybe_signed(
         if hit && !value.is_finite() {
             let help = match said {
                 _ if speaker == names::FACE => Some(format!(
-                    "if {speaker} does not say which rays hit, declare --no-faces: it is then left out"
+                    "if {speaker} does not say which rays hit, declare --no-faces to check, or \"no_faces\": true in its candidate.json: it is \
+                     then left out"
                 )),
                 // A map that says "hit" by a number that others write for "no hit".
                 Some(said) => Some(declare_miss(said.cells()[index], channel.storage)),

@@ -94,13 +94,15 @@ fn a_number_for_no_hit_beside_faces_is_refused_with_help_and_can_be_declared() {
 #[test]
 fn a_number_for_no_hit_without_faces_can_be_declared() {
     let negative = folder(&ranges(-1.0), None);
-    assert!(help(negative.path()).ends_with("declare --miss -1"));
+    assert!(
+        help(negative.path()).ends_with("declare --miss -1 to check, or \"miss\": -1 in its candidate.json")
+    );
     assert!(passes(&read(negative.path(), miss(-1.0)).unwrap()));
     // 0 is a length; but another channel holds no number there.
     let zero = folder(&ranges(0.0), None);
     let depths = Image::from_cells(9, 8, (0..72).map(|k| if k % 9 < 5 { 2.0 } else { f64::NAN }).collect());
     write_npy(zero.path().join("camera/depth.Z.npy"), &[&depths]).unwrap();
-    assert!(help(zero.path()).ends_with("declare --miss 0"), "{}", help(zero.path()));
+    assert!(help(zero.path()).contains("declare --miss 0 to check, or "), "{}", help(zero.path()));
     assert!(passes(&read(zero.path(), miss(0.0)).unwrap()));
     // NaN, like +Inf, needs no declaration.
     let not_a_number = folder(&ranges(f64::NAN), None);

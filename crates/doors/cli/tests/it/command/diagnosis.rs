@@ -62,7 +62,7 @@ fn a_number_for_no_hit_is_suggested_and_can_be_declared() {
                 cells.iter_mut().filter(|x| x.is_infinite()).for_each(|x| *x = number);
             }
         });
-        let declare = format!("declare --miss {word}");
+        let declare = format!("declare --miss {word} to check, or \"miss\": {word} in its candidate.json");
         assert_trouble(&check(folder.path(), "pyramids", &[]), &["`range.T` at", "+Inf", "help", &declare]);
         assert_passes(&check(folder.path(), "pyramids", &["--miss", word]));
         // Another number declares nothing.
