@@ -71,7 +71,7 @@ pub fn read_candidate(
         number if conventions.means_miss(number, error_of(&of_side, ray)) => Ok(None),
         number => {
             let expected = "1 for a front, -1 for a back, 0 or NaN where nothing is hit";
-            Err(reader.fault("side", format!("cell {ray}"), number.to_string(), expected))
+            Err(reader.fault("side", format!("cell {ray}"), short(number), expected))
         }
     };
     let side = sides.as_ref().map(|numbers| numbers.iter().enumerate().map(side).collect()).transpose()?;
@@ -127,6 +127,13 @@ fn refuse_file(path: &Path) -> Result<(), FileError> {
     let expected =
         "a folder with face.npy, t.npy, range.npy or hit.npy, or a point cloud: .pcd, .ply or .mcap";
     Err(FileError::Array(Fault::new("candidate", found, expected).in_file(path)))
+}
+
+/// A number in few letters.
+fn short(number: f64) -> String {
+    let size = number.abs();
+    let is_plain = !size.is_finite() || size == 0.0 || (1e-5..1e15).contains(&size);
+    if is_plain { number.to_string() } else { format!("{number:e}") }
 }
 
 /// Values, and how far storing may have moved each of them.

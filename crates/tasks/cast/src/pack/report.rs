@@ -1,6 +1,6 @@
 //! A check of a pack of rays in the form of every check.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use raypencil_judge::Class;
 use raypencil_pack::{
@@ -276,8 +276,7 @@ impl RayPackChecked {
         });
         let of_strays = (!strays.is_empty())
             .then(|| of_cloud(STRAYS, "points of one ray each", points, strays.len() as u64));
-        let listed = self.comparison.wrong().map(|(index, wrong)| self.wrong_ray(name, index, &wrong));
-        let listed = listed.take(MAX_LISTED);
+        let listed = self.telling().into_iter().map(|(index, wrong)| self.wrong_ray(name, index, &wrong));
         let listed = listed.chain(keys.iter().take(MAX_LISTED).map(|ray| self.wrong_key(name, *ray)));
         let listed = listed.chain(numbers.iter().take(MAX_LISTED).map(|ray| self.wrong_number(name, *ray)));
         let listed = listed.chain(strays.iter().take(MAX_LISTED).map(|point| self.stray(name, *point)));
@@ -297,6 +296,29 @@ impl RayPackChecked {
             listed: listed.collect(),
             why: self.why.clone(),
         }
+    }
+
+    /// The wrong rays to list, by turns: one with a wrong hit, then one of each value, the largest part of its bound first.
+    fn telling(&self) -> Vec<(usize, Wrong)> {
+        let mut groups: BTreeMap<Option<usize>, Vec<(usize, Wrong)>> = BTreeMap::new();
+        for (index, wrong) in self.comparison.wrong() {
+            let group = match &wrong {
+                Wrong::Value { value, .. } => Some(*value as usize),
+                _ => None,
+            };
+            groups.entry(group).or_default().push((index, wrong));
+        }
+        let ratio = |wrong: &Wrong| match wrong {
+            // What is no number is the worst.
+            Wrong::Value { error, bound, .. } if (error / bound).is_finite() => error / bound,
+            _ => f64::INFINITY,
+        };
+        // Stable: of equals the first ray stays first.
+        groups.values_mut().for_each(|group| group.sort_by(|a, b| ratio(&b.1).total_cmp(&ratio(&a.1))));
+        let most = groups.values().map(Vec::len).max().unwrap_or(0).min(MAX_LISTED);
+        let turns =
+            (0..most).flat_map(|turn| groups.values().filter_map(move |group| group.get(turn).cloned()));
+        turns.take(MAX_LISTED).collect()
     }
 
     /// A ray whose point has the ring, channel or time of another.

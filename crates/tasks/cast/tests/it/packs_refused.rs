@@ -163,10 +163,12 @@ fn a_changed_pack_and_arrays_of_another_shape_are_refused() {
         let words = format!("hit.npy: cell 3: {found}; expected 1 where the ray hits, 0 where it does not");
         assert!(refused(&folders).ends_with(&words), "{}", refused(&folders));
     }
-    for number in [2.0, 0.5, -77.0, 1e-300, f64::INFINITY] {
+    for (number, shown) in
+        [(2.0, "2"), (0.5, "0.5"), (-77.0, "-77"), (1e-300, "1e-300"), (f64::INFINITY, "inf")]
+    {
         let folders = Folders::right().change("side", |ray, side| if ray == 3 { number } else { side });
         let words =
-            format!("side.npy: cell 3: {number}; expected 1 for a front, -1 for a back, 0 or NaN where");
+            format!("side.npy: cell 3: {shown}; expected 1 for a front, -1 for a back, 0 or NaN where");
         assert!(refused(&folders).contains(&words), "{}", refused(&folders));
     }
     let folders = Folders::right();

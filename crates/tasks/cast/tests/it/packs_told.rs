@@ -434,3 +434,35 @@ fn errors_without_a_rule_are_not_explained() {
         Folders::right().change("t", |index, t| if index == hit { t * (1.0 + 1e-9) } else { t }).check();
     assert_eq!(checked.comparison.counts().wrong, 1);
 }
+
+/// Of many wrong rays those are listed that tell most: wrong hits and wrong values by turns, the worst of each first.
+#[test]
+fn the_worst_and_the_most_telling_rays_are_listed() {
+    let right = Folders::right();
+    let faces = read_npy_numbers(right.candidate.path().join("face.npy"), &Default::default());
+    let hit: Vec<bool> = faces.unwrap().values.iter().map(|face| *face < 12.0).collect();
+    let hits: Vec<usize> = (0..200).filter(|&ray| hit[ray]).collect();
+    // Forty lengths, each a little worse than the one before it; then normals; and last of all two wrong faces.
+    let (lengths, normals, wrong) =
+        (hits[..40].to_vec(), hits[40..45].to_vec(), hits[hits.len() - 2..].to_vec());
+    let of = lengths.clone();
+    let changed = right
+        .change("t", move |ray, t| {
+            of.iter().position(|&one| one == ray).map_or(t, |k| t * (1.0 + 1e-6 * (k + 1) as f64))
+        })
+        .without(&["range", "point"])
+        .change("normal", move |at, part| if normals.contains(&(at / 3)) { 2.0 * part } else { part })
+        .change("face", {
+            let wrong = wrong.clone();
+            move |ray, face| if wrong.contains(&ray) { 11.0 - face } else { face }
+        });
+    let bundle = changed.check().bundle("rays");
+    let listed = &bundle.listed;
+    let quantities: Vec<&str> = listed.iter().map(|ray| ray.line.quantity.as_str()).collect();
+    assert_eq!(&quantities[..6], ["first hit", "t", "normal", "first hit", "t", "normal"], "{quantities:?}");
+    assert_eq!(listed.len(), 12);
+    // The first length is the worst of the table.
+    let worst = bundle.items.iter().find(|item| item.key == "t").unwrap().worst_ratio.as_ref().unwrap();
+    assert_eq!(listed[1].line.place, worst.place);
+    assert_ne!(listed[1].line.place, format!("rays {}", lengths[0]), "the first one is not the worst");
+}
