@@ -11,7 +11,7 @@ use crate::maps::occupancy::{Occupancy, OccupancyGrid};
 ///
 /// A cell belongs to the nearest sector. It is free before the sector's end, occupied at an end that is an obstacle,
 /// and unknown elsewhere. Cells under the vehicle are free. A cell that is too far from all tested places is unknown
-/// ([`tested_within`]).
+/// (`tested_within`).
 ///
 /// ```
 /// use glam::DVec2;
