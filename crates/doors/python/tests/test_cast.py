@@ -215,10 +215,11 @@ def test_a_scenes_terrain_is_a_mesh(small: raypencil.Scene) -> None:
 
 
 def test_what_looks_wrong_is_warned_of(cube: Mesh) -> None:
-    # Rays in metres at a cube in millimetres: they end long before it.
-    away = [[0.5, 0.5, 5000.0], [0.25, 0.5, 5000.0]]
-    with pytest.warns(raypencil.RaypencilWarning, match=r"none of the 2 rays hits .*--scale 0\.001"):
-        answers = cast(cube, away, [0, 0, -1], t_max=10)
+    # Rays in metres inside a cube of 8 m in millimetres: they end long before it.
+    inside = [[0.5, 0.5, 0.0], [0.25, 0.5, 0.0]]
+    room = Mesh(cube.vertices * 4000.0, cube.faces)
+    with pytest.warns(raypencil.RaypencilWarning, match=r"none of the 2 rays hits .*--scale 0\.001\)\? 2 of 2 would hit"):
+        answers = cast(room, inside, [0, 0, -1], t_max=10)
     assert not answers.hit.any() and len(answers.warnings) == 1
     assert pickle.loads(pickle.dumps(answers)).warnings == answers.warnings
     # An open mesh is none for crossings, and is one for first hits.
