@@ -53,17 +53,7 @@ pub(crate) struct Estimate {
     pub variance: f64,
 }
 
-/// Difference of elevations that is still of one level whatever the errors are, metres. Tuned: a third of what the body of the default
-/// vehicle clears. On the roughest ground of the tests, with noise, a stripe corrects the vehicle by 0.11 m beyond three deviations.
-const ONE_LEVEL_M: f64 = 0.12;
-
 impl Estimate {
-    /// Whether an error of the elevation may be that of an elevation with this variance. A greater one is not: the stripes lie on
-    /// another level than what was measured there, as on the face of a post of which the top was seen before.
-    pub fn is_of_one_level(self, variance: f64) -> bool {
-        self.elevation.abs() <= GATE_DEVIATIONS * (variance + self.variance).sqrt() + ONE_LEVEL_M
-    }
-
     /// The elevation after a way of `distance` (horizontal, metres) on which the vehicle rose by `rise` by its tilt.
     /// `attitude_noise` is the standard error of an angle, radians.
     pub fn predicted(self, rise: f64, distance: f64, attitude_noise: f64) -> Self {

@@ -199,9 +199,6 @@ impl Mapper {
         let errors = points.iter().map(|point| point.standard_error);
         let row_error = errors.sum::<f64>() / points.len().max(1) as f64;
         let Some(error) = elevation_error(&self.map, &placed, row_error) else { return };
-        if !error.is_of_one_level(self.variance) {
-            return;
-        }
         let z = self.pose.position.z;
         let believed = Estimate { elevation: z, variance: self.variance };
         let registered = Estimate { elevation: z - error.elevation, variance: error.variance };
