@@ -20,6 +20,7 @@ import numpy as np, raypencil, sys
 mesh = raypencil.terrain.generate("smooth", 1, extent=8)
 rays = np.zeros((400_000, 6)); rays[:, 0:2] = np.random.default_rng(0).uniform(-4, 4, (400_000, 2)); rays[:, 2] = 5
 rays[:, 3:6] = [0.1, 0.2, -1]
+many = np.tile(rays, (8, 1))
 print("ready", flush=True)
 """
 
@@ -76,7 +77,7 @@ def test_two_calls_overlap_and_answer_as_one() -> None:
     "call",
     [
         "raypencil.cast(mesh, rays, margins=True)",
-        "raypencil.judge(mesh, np.tile(rays, (8, 1)), {'t': np.ones(len(rays) * 8)})",
+        "raypencil.judge(mesh, many, {'t': np.ones(len(many))})",
         "raypencil.validate(raypencil.Scene('pyramids'), judge='all')",
         "raypencil.drive('pyramids', with_='referee').run()",
     ],
