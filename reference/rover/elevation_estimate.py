@@ -14,6 +14,8 @@ OTHER_LEVEL_SLOPE = 0.35
 MIN_AGE = 0.3 - 1e-9  # m of way; younger cells share the present error of the elevation. Frames of 6 cm meet it exactly
 MIN_POINTS = 20  # fewest points that correct by the ground that stripes meet again
 MAX_SLOPE = 1.0  # of that ground
+MAX_ROUGHNESS = 0.35  # of cells off their plane, root mean square, in spacings: such cells are one surface
+STEP_OF_A_SURFACE = MAX_ROUGHNESS * 9 / np.sqrt(8)  # so far may one of nine cells stand out of it, in spacings
 MIN_SHARED_ERROR = 0.005  # m, of all points of a stripe
 MIN_VARIANCE = 1e-8  # square metres
 
@@ -78,7 +80,7 @@ class Elevation:
 
     def correct_by_stripes(self, elevation_map, points, row_error, way):
         """Median height of new points over the planes through the old cells around each. `points` were placed by z."""
-        heights = []
+        heights, smooth = [], []
         n = elevation_map.points
         old = (elevation_map.source == MEASURED) & (way - elevation_map.way >= MIN_AGE)
         for x, y, z in points:
@@ -89,17 +91,22 @@ class Elevation:
             at = old[block]
             if at.sum() < 4:
                 continue
-            dx, dy = elevation_map.x[block][at] - x, elevation_map.y[block][at] - y
-            fit = plane(dx, dy, elevation_map.elevation[block][at], np.ones(at.sum()), 1e-2)
+            dx, dy, dz = elevation_map.x[block][at] - x, elevation_map.y[block][at] - y, elevation_map.elevation[block][at]
+            fit = plane(dx, dy, dz, np.ones(at.sum()), 1e-2)
             if fit is not None and fit[1] ** 2 + fit[2] ** 2 <= MAX_SLOPE ** 2:
+                off = dz - fit[0] - fit[1] * dx - fit[2] * dy
                 heights.append(z - fit[0])
-        if len(heights) < MIN_POINTS:
+                smooth.append(np.sqrt((off ** 2).mean()) <= MAX_ROUGHNESS * elevation_map.spacing)
+        shared = max(row_error, MIN_SHARED_ERROR)
+        found = median(heights, shared)
+        if found is None:
             return
-        heights = np.sort(heights)
-        middle = heights[len(heights) // 2]
-        deviation = 1.4826 * np.sort(np.abs(heights - middle))[len(heights) // 2]
-        variance = np.pi / 2 * deviation ** 2 / len(heights) + max(row_error, MIN_SHARED_ERROR) ** 2
-        self.weigh(self.z - middle, variance)
+        expected = OTHER_LEVEL_DEVIATIONS * np.sqrt(self.variance + found[1]) + STEP_OF_A_SURFACE * elevation_map.spacing
+        if abs(found[0]) > expected:
+            # Nobody expected that: only ground that is one surface may tell it.
+            found = median([height for height, is_smooth in zip(heights, smooth) if is_smooth], shared)
+        if found is not None:
+            self.weigh(self.z - found[0], found[1])
 
     def weigh(self, z, variance):
         """Believes both what is believed and z, by their inverse variances."""
@@ -108,6 +115,16 @@ class Elevation:
         self.corrected += share * (z - self.z)
         self.z += share * (z - self.z)
         self.variance = share * other
+
+
+def median(heights, shared):
+    """The median with its variance, None of too few. All heights have the standard error `shared` in common."""
+    if len(heights) < MIN_POINTS:
+        return None
+    heights = np.sort(heights)
+    middle = heights[len(heights) // 2]
+    deviation = 1.4826 * np.sort(np.abs(heights - middle))[len(heights) // 2]
+    return middle, np.pi / 2 * deviation ** 2 / len(heights) + shared ** 2
 
 
 def plane(dx, dy, z, weight, least_spread):

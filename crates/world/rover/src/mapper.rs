@@ -198,7 +198,7 @@ impl Mapper {
         let placed: Vec<DVec3> = points.iter().map(|point| self.pose * point.point).collect();
         let errors = points.iter().map(|point| point.standard_error);
         let row_error = errors.sum::<f64>() / points.len().max(1) as f64;
-        let Some(error) = elevation_error(&self.map, &placed, row_error) else { return };
+        let Some(error) = elevation_error(&self.map, &placed, row_error, self.variance) else { return };
         let z = self.pose.position.z;
         let believed = Estimate { elevation: z, variance: self.variance };
         let registered = Estimate { elevation: z - error.elevation, variance: error.variance };

@@ -23,18 +23,59 @@ const MIN_POINTS: usize = 20;
 /// over distance. CHOICE: a slope of 45 degrees.
 const MAX_SLOPE: f64 = 1.0;
 
+/// The cells around a point are one surface if they lie off the plane through them by no more than this share of their
+/// spacing, root mean square. CHOICE: the rise over distance up to which two points of a cell lie on one surface.
+const MAX_ROUGHNESS: f64 = 0.35;
+
+/// Of nine cells, one may stand out by this share of their spacing and they are still one surface: its h raises their plane by h / 9, so that it
+/// lies 8/9 h off it and each other one 1/9 h, and the root mean square is h sqrt(8) / 9. A thing lower than that is not told from the ground.
+const LARGEST_STEP_OF_A_SURFACE: f64 = MAX_ROUGHNESS * 9.0 / (2.0 * std::f64::consts::SQRT_2);
+
+/// Standard deviations up to which an error is expected. CHOICE: as for the ground under the origin.
+const EXPECTED_DEVIATIONS: f64 = 3.0;
+
 /// Least standard error that all points of a stripe share, metres. CHOICE: what a fifth of a pixel's row makes at the
 /// stripes of the default rig.
 const MIN_SHARED_ERROR_M: f64 = 0.005;
 
+/// Ground under a point, as it was measured some way ago.
+struct OldGround {
+    /// Metres.
+    elevation: f64,
+    /// Whether its cells lie on one surface.
+    is_surface: bool,
+}
+
 /// Error of the vehicle's elevation relative to the map, with its variance, from points of a frame (global, metres) that
-/// were placed by that elevation. `None` if too few lie on ground that was measured long enough ago.
+/// were placed by that elevation, whose variance is `believed`, square metres. `None` if too few lie on ground that was measured
+/// long enough ago.
+///
+/// An error that the belief does not expect is taken only from ground that is one surface. A stripe that climbs a thing lies
+/// lower or higher than what was measured of it before, by up to its height, and no error of the vehicle is needed for that.
 ///
 /// `row_error` is the standard error of a point by its row in the image, metres. On level ground the whole stripe lies in
 /// one row, so that all of its points share that error.
-pub(crate) fn elevation_error(map: &ElevationMap, points: &[DVec3], row_error: f64) -> Option<Estimate> {
-    let mut heights: Vec<f64> =
-        points.iter().filter_map(|&point| Some(point.z - old_ground(map, point)?)).collect();
+pub(crate) fn elevation_error(
+    map: &ElevationMap,
+    points: &[DVec3],
+    row_error: f64,
+    believed: f64,
+) -> Option<Estimate> {
+    let met = points.iter().filter_map(|&point| Some((point.z, old_ground(map, point)?)));
+    let heights: Vec<(f64, bool)> = met.map(|(z, old)| (z - old.elevation, old.is_surface)).collect();
+    let shared = row_error.max(MIN_SHARED_ERROR_M);
+    let error = median(heights.iter().map(|&(height, _)| height), shared)?;
+    let expected = EXPECTED_DEVIATIONS * (believed + error.variance).sqrt()
+        + LARGEST_STEP_OF_A_SURFACE * map.size().spacing;
+    if error.elevation.abs() <= expected {
+        return Some(error);
+    }
+    median(heights.iter().filter(|(_, is_surface)| *is_surface).map(|&(height, _)| height), shared)
+}
+
+/// The median of heights, with its variance. `shared` is a standard error that all of them have, metres. `None` of too few.
+fn median(heights: impl Iterator<Item = f64>, shared: f64) -> Option<Estimate> {
+    let mut heights: Vec<f64> = heights.collect();
     if heights.len() < MIN_POINTS {
         return None;
     }
@@ -48,13 +89,12 @@ pub(crate) fn elevation_error(map: &ElevationMap, points: &[DVec3], row_error: f
     // error of sqrt(pi / 2) times that of its mean.
     let deviation = 1.4826 * median(&off);
     let variance = std::f64::consts::FRAC_PI_2 * deviation * deviation / heights.len() as f64;
-    let shared = row_error.max(MIN_SHARED_ERROR_M);
     Some(Estimate { elevation: middle, variance: variance + shared * shared })
 }
 
 /// Elevation of the ground at a point's place by what was measured around it some way ago: a plane through the nine cells
 /// around. `None` if its own cell was not measured then, or if the ground is too steep there.
-fn old_ground(map: &ElevationMap, point: DVec3) -> Option<f64> {
+fn old_ground(map: &ElevationMap, point: DVec3) -> Option<OldGround> {
     let at = map.nearest(point.truncate());
     let is_old = |at: GridPoint| {
         let cell = map.cell(at);
@@ -83,6 +123,15 @@ fn old_ground(map: &ElevationMap, point: DVec3) -> Option<f64> {
     }
     let slope = [(yy * xz - xy * yz) / det, (xx * yz - xy * xz) / det];
     let steep = slope[0] * slope[0] + slope[1] * slope[1] > MAX_SLOPE * MAX_SLOPE;
-    let away = point - mean;
-    (!steep).then(|| mean.z + slope[0] * away.x + slope[1] * away.y)
+    let plane_at = |at: DVec3| {
+        let away = at - mean;
+        mean.z + slope[0] * away.x + slope[1] * away.y
+    };
+    let off = near.iter().map(|&sample| {
+        let residual = sample.z - plane_at(sample);
+        residual * residual
+    });
+    let limit = MAX_ROUGHNESS * map.size().spacing;
+    let is_surface = off.sum::<f64>() <= limit * limit * count;
+    (!steep).then(|| OldGround { elevation: plane_at(point), is_surface })
 }

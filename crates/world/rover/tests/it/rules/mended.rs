@@ -509,6 +509,64 @@ fn an_elevation_that_is_off_is_seen_by_the_ground_that_stripes_meet_again() {
     assert!((kept - risen).abs() < 1e-12 && kept > 0.03, "{kept}");
 }
 
+/// Elevation that a vehicle believes on level ground at 0: it measured these cells (of 0.1 m) some 4 m ahead, drove 0.4 m, and now
+/// its stripe meets the middle one at this height, 30 times.
+fn believed_after(cells: &[(i32, i32, f64)], height: f64) -> f64 {
+    let at = |x: f64| sensed(DVec2::new(x, 0.0), Attitude::default(), 0.0);
+    let mut mapper =
+        Mapper::with_rules(Vehicle::default(), MapSize::default(), MapRules::MENDED, &at(0.0), 0.0);
+    let place = |&(i, j, z): &(i32, i32, f64)| DVec3::new(4.0 + 0.1 * f64::from(i), 0.1 * f64::from(j), z);
+    mapper.update(&at(0.0), cells.iter().map(place).map(StripePoint::from));
+    let no_points: [DVec3; 0] = [];
+    for step in 1..4 {
+        mapper.update(&at(0.1 * f64::from(step)), no_points);
+    }
+    let met = (-15..15).map(|n| DVec3::new(3.6, 0.003 * f64::from(n), height));
+    mapper.update(&at(0.4), met.map(StripePoint::from));
+    mapper.pose().position.z
+}
+
+#[test]
+fn a_stripe_that_climbs_a_thing_is_no_error_of_the_vehicle() {
+    // A post 0.1 m wide and 1 m high, its edges between cells: the far stripe met its top and its face, and the ground before and
+    // beside it. The plane through these cells is not steeper than 1. 0.4 m on, the stripe meets the face 0.36 m lower.
+    let post =
+        [(-1, -1, 0.0), (0, -1, 0.59), (-1, 0, 0.0), (0, 0, 0.99), (1, 0, 0.99), (-1, 1, 0.0), (0, 1, 0.59)];
+    let cells = [&post[..], &[(1, -1, 0.0), (1, 1, 0.0)]].concat();
+    for cells in [&post[..], &cells] {
+        let believed = believed_after(cells, 0.627);
+        assert!(believed.abs() < 1e-12, "{believed}");
+    }
+}
+
+/// What [`believed_after`] gives where the middle one of nine level cells is higher by `step`, and the stripe is so far off their plane.
+fn believed_over_a_step(step: f64, off: f64) -> f64 {
+    let around = (-1..=1).flat_map(|i| (-1..=1).map(move |j| (i, j)));
+    let cells: Vec<_> = around.map(|(i, j)| (i, j, if (i, j) == (0, 0) { step } else { 0.0 })).collect();
+    believed_after(&cells, step / 9.0 + off)
+}
+
+#[test]
+fn an_unexpected_error_is_taken_from_ground_up_to_its_limit_of_roughness() {
+    // Of nine cells the middle one is higher by h: they lie off their plane by h sqrt(8) / 9 = 0.3143 h. The limit is 0.35 of
+    // their spacing, that is h = 0.1114 m. A stripe 0.3 m above that plane says that the vehicle believes to be too high.
+    for (step, is_corrected) in [(0.0, true), (0.111, true), (0.112, false), (1.0, false)] {
+        let believed = believed_over_a_step(step, 0.3);
+        assert_eq!(believed < -0.1, is_corrected, "{step}: {believed}");
+        assert!(is_corrected || believed.abs() < 1e-12, "{step}: {believed}");
+    }
+}
+
+#[test]
+fn an_error_is_expected_up_to_three_deviations_and_a_step() {
+    // After 0.4 m the variance is 0.4 (2 cm)^2, that of the stripe (1 cm)^2: three deviations are 0.0484 m. A surface may hold a
+    // step of 0.1114 m. So 0.1597 m of error are taken from any ground, and more from one surface alone.
+    for (off, is_corrected) in [(0.1592, true), (0.1602, false), (-0.1592, true), (-0.1602, false)] {
+        let believed = believed_over_a_step(0.5, off);
+        assert_eq!(believed.abs() > 0.05, is_corrected, "{off}: {believed}");
+    }
+}
+
 #[test]
 fn slopes_fail_a_thousandth_above_their_limits_and_pass_a_thousandth_below() {
     // Without margins the errors of the points do not matter. All limits are a rise of 0.35 m: between the front wheels,
