@@ -8,7 +8,7 @@
 
 use std::cmp::Ordering;
 
-use raypencil_scene::{CastRay, Side, Sides};
+use raypencil_scene::{CastRay, FaceId, Side, Sides};
 
 use super::query_ray::RayNumbers;
 use super::triangle::Triangle;
@@ -106,6 +106,37 @@ impl ExactCast<'_> {
             if is_alone { around.max_range } else { -1.0 }
         });
         is_alone
+    }
+
+    /// The faces that the ray may meet between its ends where it is moved by at most `most` along both vectors of
+    /// [`CastRay::across`], in the order of their numbers. None that it can meet is left out; some that it cannot may be among them.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use raypencil_referee::ExactCast;
+    /// use raypencil_scene::{CastRay, FaceId, Sides, Triangles};
+    ///
+    /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+    /// let square = Triangles::new(corners, vec![[0, 1, 2], [1, 3, 2]])?;
+    /// let (exact, ray) = (ExactCast::new(&square), CastRay::new(DVec3::new(0.25, 0.25, 1.0), DVec3::NEG_Z));
+    /// assert_eq!(exact.faces_near(&ray, Sides::Both, 0.2), [FaceId(0)]);
+    /// assert_eq!(exact.faces_near(&ray, Sides::Both, 0.3), [FaceId(0), FaceId(1)]);
+    /// # Ok::<(), raypencil_scene::SceneError>(())
+    /// ```
+    pub fn faces_near(&self, ray: &CastRay, sides: Sides, most: f64) -> Vec<FaceId> {
+        let (square, around) = (Square::new(ray, most), around(ray, most));
+        let mut near = Vec::new();
+        self.bvh().visit(&around, |face| {
+            if !square.is_outside(face) && !square.is_unseen(face, sides) {
+                let t = square.t(face);
+                if !(t.high < ray.t_min || t.low > ray.t_max) {
+                    near.push(face.id);
+                }
+            }
+            around.max_range
+        });
+        near.sort_unstable();
+        near
     }
 }
 

@@ -81,3 +81,36 @@ fn the_corners_of_a_square_are_looked_at() {
         assert!(!is_steady(0.301), "{direction}");
     }
 }
+
+/// What a moved ray meets is among the faces near the ray, and few others are.
+#[test]
+fn no_face_that_a_moved_ray_meets_is_left_out() {
+    let mut random = SplitMix64(9);
+    let (mut met, mut near, mut beside) = (0, 0, 0);
+    for _ in 0..100 {
+        let mesh = soup(&mut random);
+        let cast = ExactCast::new(&mesh);
+        for sides in [Sides::Both, Sides::Fronts] {
+            let endless = ray_at(&mesh, &mut random);
+            let ray = if random.below(2) == 0 { endless } else { CastRay { t_max: 1.0, ..endless } };
+            let most = 0.2;
+            let listed = cast.faces_near(&ray, sides, most);
+            assert!(listed.is_sorted_by(|a, b| a < b), "{listed:?}");
+            near += listed.len();
+            let mut seen = Vec::new();
+            for _ in 0..40 {
+                let by = [0; 2].map(|_| most * random.part());
+                seen.extend(cast.first_moved(&ray, sides, by));
+            }
+            seen.sort_unstable();
+            seen.dedup();
+            met += seen.len();
+            beside += usize::from(seen.len() > 1);
+            for face in seen {
+                assert!(listed.contains(&face), "{face:?} of {listed:?} for {ray:?}");
+            }
+        }
+    }
+    // The others lie behind what the rays meet first, or beside them.
+    assert!(met > 150 && beside > 30 && near < 6 * met, "{met} {beside} {near}");
+}

@@ -167,10 +167,6 @@ fn is_corner(weights: [f64; 3]) -> bool {
     [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].contains(&weights)
 }
 
-/// Ways to move a ray sideways, as parts of how far rounding may move it.
-const AROUND: [[f64; 2]; 8] =
-    [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]];
-
 /// The same ray without its ends.
 fn endless(ray: &CastRay) -> CastRay {
     CastRay { t_min: 0.0, t_max: f64::INFINITY, ..*ray }
@@ -249,16 +245,20 @@ impl Judge<'_> {
         if self.has_normal_of(index, ray, face)? {
             return None;
         }
+        let near = self.faces_near(ray).into_iter();
+        near.filter(|other| self.has_normal_of(index, ray, *other) == Some(true)).find_map(|other| match self
+            .exact
+            .rule(ray, self.sides, Reading::Hit(other), self.precision)
+        {
+            Ruling::Rounding(by) => Some((RayVerdict::Rounding { moved: by.to_array() }, [None; 7])),
+            _ => None,
+        })
+    }
+
+    /// The faces that rounding may let a ray meet, its ends left out.
+    fn faces_near(&self, ray: &CastRay) -> Vec<FaceId> {
         let most = self.exact.lateral_error(ray, self.precision);
-        let beside = AROUND
-            .into_iter()
-            .flat_map(|by| self.exact.first_moved(ray, self.sides, by.map(|part| part * most)));
-        beside.into_iter().filter(|other| self.has_normal_of(index, ray, *other) == Some(true)).find_map(
-            |other| match self.exact.rule(ray, self.sides, Reading::Hit(other), self.precision) {
-                Ruling::Rounding(by) => Some((RayVerdict::Rounding { moved: by.to_array() }, [None; 7])),
-                _ => None,
-            },
-        )
+        self.exact.faces_near(&endless(ray), self.sides, most)
     }
 
     /// Whether the normal that is stated of a ray is that of a face, as far as rounding may move it; `None`: none is stated.
@@ -351,12 +351,7 @@ impl Judge<'_> {
             return Ok(Reading::Hit(faces[0]));
         }
         // What the ray meets beyond its ends, and what rays around it do.
-        let beyond = self.exact.all(&endless(ray), self.sides).into_iter().flat_map(|group| group.faces);
-        let most = self.exact.lateral_error(ray, self.precision);
-        let beside = AROUND
-            .into_iter()
-            .flat_map(|by| self.exact.first_moved(ray, self.sides, by.map(|part| part * most)));
-        let found = beyond.map(|met| met.face).chain(beside).find(|face| self.is_excused(ray, *face));
+        let found = self.faces_near(ray).into_iter().find(|face| self.is_excused(ray, *face));
         let exact = read.clone().map(|faces| faces[0]);
         found.map(Reading::Hit).ok_or(Wrong::Something { exact })
     }

@@ -7,7 +7,7 @@ use raypencil_cast::{
 };
 use raypencil_files::write_npy_numbers;
 use raypencil_referee::{CastHit, ExactCast, Rounded};
-use raypencil_scene::{CastRay, Precision, Sides, Silent};
+use raypencil_scene::{CastRay, FaceId, Precision, Sides, Silent, Triangles};
 
 use super::pack_trial::{Folders, VALUES, cube, npy_of, rays, source};
 
@@ -295,6 +295,39 @@ fn within_rounding_of_an_edge_the_normal_of_the_other_face_is_right() {
     assert_eq!(hits(DVec3::Y, Precision::F64), (0, 0, 1));
     assert_eq!(hits(DVec3::Z, Precision::F32), (0, 0, 1));
     assert_eq!(hits(-DVec3::Y, Precision::F32), (0, 0, 1));
+}
+
+/// A needle beside the ray, in a direction between the eight of a compass: rounding lets a program take it, and its normal is right.
+#[test]
+fn within_rounding_of_a_needle_its_normal_is_right_in_any_direction() {
+    // A ground of two faces, and above it a needle that begins 3e-9 beside the ray. It leans to one side, so that it has another normal.
+    let near = 3e-9;
+    for degrees in [0.0_f64, 11.0, 20.0, 33.0, 67.0, 100.0, 160.0, 200.0, 290.0, 340.0] {
+        let (sin, cos) = libm::sincos(degrees.to_radians());
+        let at =
+            |along: f64, across: f64, z: f64| [along * cos - across * sin, along * sin + across * cos, z];
+        let width = 1e-10;
+        let corners = vec![
+            [-2.0, -2.0, 0.0],
+            [2.0, -2.0, 0.0],
+            [2.0, 2.0, 0.0],
+            [-2.0, 2.0, 0.0],
+            at(near, -width, 1e-9),
+            at(1.0, 0.0, 0.5),
+            at(near, width, 1e-9),
+        ];
+        let mesh = Triangles::new(corners, vec![[0, 1, 2], [0, 2, 3], [4, 5, 6]]).unwrap();
+        let ray = CastRay::new(DVec3::new(0.0, 0.0, 1.0), DVec3::NEG_Z);
+        let [a, b, c] = mesh.corners(FaceId(2));
+        let normal = (b - a).cross(c - a).normalize();
+        let wrong = |normal, precision| {
+            let stated = Stated { t: Some(vec![1.0]), normal: Some(vec![normal]), ..Stated::default() };
+            compare(&mesh, &[ray], Sides::Both, &stated, precision, &Silent).counts().wrong
+        };
+        assert_eq!(wrong(normal, Precision::F32), 0, "{degrees}");
+        assert_eq!(wrong(DVec3::Z, Precision::F32), 0, "{degrees}");
+        assert_eq!(wrong(normal, Precision::F64), 1, "{degrees}");
+    }
 }
 
 /// Half precision has no odd number beyond 2048, single none beyond 2^24.

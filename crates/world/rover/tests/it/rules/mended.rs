@@ -528,15 +528,11 @@ fn believed_after(cells: &[(i32, i32, f64)], height: f64) -> f64 {
 
 #[test]
 fn a_stripe_that_climbs_a_thing_is_no_error_of_the_vehicle() {
-    // A post 0.1 m wide and 1 m high, its edges between cells: the far stripe met its top and its face, and the ground before and
-    // beside it. The plane through these cells is not steeper than 1. 0.4 m on, the stripe meets the face 0.36 m lower.
-    let post =
-        [(-1, -1, 0.0), (0, -1, 0.59), (-1, 0, 0.0), (0, 0, 0.99), (1, 0, 0.99), (-1, 1, 0.0), (0, 1, 0.59)];
-    let cells = [&post[..], &[(1, -1, 0.0), (1, 1, 0.0)]].concat();
-    for cells in [&post[..], &cells] {
-        let believed = believed_after(cells, 0.627);
-        assert!(believed.abs() < 1e-12, "{believed}");
-    }
+    // A post 0.1 m wide and 1 m high: the far stripe met its face near the top, and the ground before it and at its corners. The plane
+    // through these cells is not steeper than 1. 0.4 m on, the stripe meets the face 0.36 m lower.
+    let post = [(-1, -1, 0.0), (-1, 0, 0.0), (-1, 1, 0.0), (0, 0, 0.99), (1, -1, 0.0), (1, 1, 0.0)];
+    let believed = believed_after(&post, 0.63);
+    assert!(believed.abs() < 1e-12, "{believed}");
 }
 
 /// What [`believed_after`] gives where the middle one of nine level cells is higher by `step`, and the stripe is so far off their plane.
