@@ -34,7 +34,7 @@ pub(super) fn cases() -> Vec<Case> {
         word("length-0", "a length of 0", 8, 0, "GLB header"),
         word("length-11", "a length that ends within the header", 8, 11, "GLB header"),
         word("length-top", "a length of 2^32 - 1", 8, u32::MAX, "GLB header"),
-        word("length-short", "a length that ends within the last chunk", 8, length as u32 - 4, "GLB chunk 1"),
+        word("length-short", "a length that ends within the last chunk", 8, length as u32 - 4, "GLB header"),
         word("chunk-top", "a first chunk of 2^32 - 1 bytes", 12, u32::MAX, "GLB chunk 0"),
         word("chunk-wraps", "a chunk whose end overflows 32 bits", 12, u32::MAX - 19, "GLB chunk 0"),
         word("chunk-0", "a JSON chunk of no bytes", 12, 0, "GLB chunk"),

@@ -175,6 +175,7 @@ impl Node {
             (3, "group") => {
                 let keys = serde_json::from_slice(&text).map_err(invalid)?;
                 understood(&keys, &GROUP_KEYS).map_err(refuse)?;
+                check_attributes(keys.get("attributes").and_then(Value::as_object)).map_err(refuse)?;
                 Ok(Self::Group)
             }
             (3, "array") => Ok(Self::Array(serde_json::from_slice(&text).map_err(invalid)?)),
@@ -204,24 +205,57 @@ impl ArrayDocument {
         if let Some([first, ..]) = self.storage_transformers.as_deref() {
             return Err(Fault::new("storage_transformers", first.to_string(), "none"));
         }
-        // xarray, and whoever else reads by the CF conventions, multiplies and adds.
-        for (key, neutral) in [("scale_factor", 1.0), ("add_offset", 0.0)] {
-            let value = self.attributes.as_ref().and_then(|attributes| attributes.get(key));
-            if let Some(value) = value.filter(|value| value.as_f64() != Some(neutral)) {
-                let expected = format!("{neutral} or none: write the numbers as they are meant");
-                return Err(Fault::new(format!("attributes, {key}"), value.to_string(), expected));
+        check_fill_value(self.others.get("fill_value"))?;
+        check_attributes(self.attributes.as_ref())?;
+        // Older writers name dimensions there.
+        let of_attributes =
+            self.attributes.as_ref().and_then(|attributes| attributes.get("_ARRAY_DIMENSIONS"));
+        let of_attributes = of_attributes
+            .and_then(Value::as_array)
+            .map(|names| names.iter().map(|name| name.as_str().map(String::from)).collect::<Vec<_>>());
+        let named = [("dimension_names", &self.dimension_names), ("_ARRAY_DIMENSIONS", &of_attributes)];
+        for (key, names) in named.into_iter().filter_map(|(key, names)| Some((key, names.as_deref()?))) {
+            if names.len() != self.shape.len() {
+                let expected = format!("{}, one for each length of shape", self.shape.len());
+                return Err(Fault::new(key, format!("{} names", names.len()), expected));
             }
-        }
-        let names = self.dimension_names.as_deref().unwrap_or_default();
-        for (place, name) in names.iter().enumerate() {
-            let own = DIMENSIONS.iter().position(|own| Some(*own) == name.as_deref());
-            if own.is_some_and(|own| own != place) {
-                let names: Vec<&str> = names.iter().map(|name| name.as_deref().unwrap_or("?")).collect();
-                return Err(Fault::new("dimension_names", names.join(", "), DIMENSIONS.join(", ")));
+            for (place, name) in names.iter().enumerate() {
+                let is = |own: &&str| name.as_deref().is_some_and(|name| name.eq_ignore_ascii_case(own));
+                if DIMENSIONS.iter().position(is).is_some_and(|own| own != place) {
+                    let names: Vec<&str> = names.iter().map(|name| name.as_deref().unwrap_or("?")).collect();
+                    return Err(Fault::new(key, names.join(", "), DIMENSIONS.join(", ")));
+                }
             }
         }
         Ok(())
     }
+}
+
+/// Refuses an array without a value for what was never written, and one whose value is none. (Zarr core specification 3.0, "Fill value")
+fn check_fill_value(value: Option<&Value>) -> Result<(), Fault> {
+    let is_hex = |text: &str| {
+        text.strip_prefix("0x").is_some_and(|digits| digits.chars().all(|digit| digit.is_ascii_hexdigit()))
+    };
+    let is_number = |text: &str| ["NaN", "Infinity", "-Infinity"].contains(&text) || is_hex(text);
+    let found = match value {
+        Some(Value::Number(_) | Value::Bool(_)) => return Ok(()),
+        Some(Value::String(text)) if is_number(text) => return Ok(()),
+        Some(other) => other.to_string(),
+        None => "not there".into(),
+    };
+    Err(Fault::new("fill_value", found, "a number, true or false, \"NaN\", \"Infinity\" or \"-Infinity\""))
+}
+
+/// Refuses attributes by which others read other numbers: xarray, and whoever reads by the CF conventions, multiplies and adds.
+fn check_attributes(attributes: Option<&Map<String, Value>>) -> Result<(), Fault> {
+    for (key, neutral) in [("scale_factor", 1.0), ("add_offset", 0.0)] {
+        let value = attributes.and_then(|attributes| attributes.get(key));
+        if let Some(value) = value.filter(|value| value.as_f64() != Some(neutral)) {
+            let expected = format!("{neutral} or none: write the numbers as they are meant");
+            return Err(Fault::new(format!("attributes, {key}"), value.to_string(), expected));
+        }
+    }
+    Ok(())
 }
 
 /// An array; `None` if it has another shape than maps have.
@@ -265,11 +299,6 @@ impl<'a> Chunks<'a> {
         }
         let endian =
             bytes.configuration.as_ref().and_then(Option::as_ref).and_then(|it| it.endian.as_deref());
-        let order = match endian {
-            Some("little") | None => "<",
-            Some("big") => ">",
-            Some(other) => return Err(Fault::new("codecs, endian", format!("{other:?}"), "little or big")),
-        };
         let name = document.data_type.as_str().unwrap_or_default();
         let kind = match name {
             "bool" => Some("b1"),
@@ -291,6 +320,14 @@ impl<'a> Chunks<'a> {
             return Err(Fault::new("data_type", document.data_type.to_string(), expected));
         };
         let size = u64::from(kind.as_bytes()[1] - b'0');
+        let order = match endian {
+            Some("little") => "<",
+            Some("big") => ">",
+            // Of a single byte there is no order to tell.
+            None if size == 1 => "|",
+            None => return Err(Fault::new("codecs, endian", "not there", "little or big")),
+            Some(other) => return Err(Fault::new("codecs, endian", format!("{other:?}"), "little or big")),
+        };
         let grid = (document.chunk_grid.name.as_str(), document.chunk_grid.configuration.as_ref());
         let ("regular", Some(ChunkGrid { chunk_shape: chunk })) = grid else {
             return Err(Fault::new("chunk_grid", format!("{:?}", grid.0), "regular"));

@@ -11,7 +11,7 @@ use crate::channels::find::{self, FileFormat, RecordingFile};
 use crate::channels::found::{self, Found};
 use crate::channels::merge::merge;
 use crate::channels::ray_sets::{has_ray_sets, is_ray_set, ray_set_channels};
-use crate::error::FileError;
+use crate::error::{Fault, FileError};
 use crate::exr::read_exr_parts;
 use crate::limits::Limits;
 use crate::npy::read_npy;
@@ -184,6 +184,23 @@ fn read_files(
     Ok(channels)
 }
 
+/// Refuses a map of a sensor whose attribute says that it is of another one: it would be compared with rays that are not its own.
+fn refuse_other_sensor(file: &RecordingFile, attributes: &BTreeMap<String, String>) -> Result<(), FileError> {
+    let is_sensor = |name: &&str| {
+        let of_beam = name.strip_prefix("beam-").is_some_and(|number| number.parse::<u32>().is_ok());
+        *name == "camera" || of_beam
+    };
+    let called = file.stem.as_ref().and_then(|stem| stem.split('/').next()).filter(is_sensor);
+    let stated = attributes.get("sensor").map(String::as_str).filter(is_sensor);
+    match (called, stated) {
+        (Some(called), Some(stated)) if called != stated => {
+            let expected = format!("{called}, as the file is called");
+            Err(FileError::Exr(Fault::new("attribute sensor", stated, expected).in_file(&file.path)))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Channels of one file with their keys.
 fn read_one_file(
     file: &RecordingFile,
@@ -196,6 +213,7 @@ fn read_one_file(
             let parts = read_exr_parts(path, limits)?;
             let texts = parts.iter().flat_map(|part| part.map.attributes.clone());
             channels.attributes.insert(path.clone(), texts.collect());
+            refuse_other_sensor(file, &channels.attributes[path])?;
             return Ok(found::of_exr(file, parts));
         }
         FileFormat::Npz => {

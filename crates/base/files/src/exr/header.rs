@@ -19,12 +19,12 @@ const DEEP_DATA_FLAG: u8 = 1 << 3;
 /// Bit of several parts in the second byte of the version.
 const SEVERAL_PARTS_FLAG: u8 = 1 << 4;
 
-/// Refuses a file with the flag of deep data, a window that ends before it starts, and headers that take much memory: too
+/// Refuses a file with the flag of deep data, a window that ends before it starts, an attribute that is there twice, and headers that take much memory: too
 /// many bytes, attributes, channels or parts.
 ///
 /// The crate looks only at the type of the part for deep data, swaps the ends of such a window, and reads all parts and all
-/// attributes, each of which takes over a kilobyte. It reports all other faults of the header itself. Nothing is allocated
-/// here.
+/// attributes, each of which takes over a kilobyte, and takes one of two attributes of one name. It reports all other faults of the
+/// header itself. Nothing but a list of names is allocated here, after their number is known to be small.
 pub(super) fn check_attributes(file: &[u8]) -> Result<(), Fault> {
     if !file.starts_with(&MAGIC) {
         return Ok(());
@@ -38,6 +38,7 @@ pub(super) fn check_attributes(file: &[u8]) -> Result<(), Fault> {
     let mut rest = start;
     let (mut attributes, mut channels) = (0, 0);
     for parts in 1.. {
+        let mut names = BTreeSet::new();
         while let Some((attribute, after)) = Attribute::first(rest) {
             attributes += 1;
             let bytes = start.len() - after.len();
@@ -50,6 +51,11 @@ pub(super) fn check_attributes(file: &[u8]) -> Result<(), Fault> {
                 }
             }
             check_attribute(&attribute, &mut channels)?;
+            // Of two that differ, some programs take the first and others the last.
+            if !names.insert(attribute.name) {
+                let name = String::from_utf8_lossy(attribute.name).into_owned();
+                return Err(Fault::new("header", format!("attribute {name:?} twice"), "each attribute once"));
+            }
             rest = after;
         }
         // A header ends with a byte 0. Behind the last of several stands another one.

@@ -1,5 +1,6 @@
 //! PCD 0.5 to 0.7: text, binary and compressed. (Point Cloud Library, "The PCD (Point Cloud Data) file format")
 
+use glam::DVec4;
 use raypencil_files::Fault;
 
 use super::columns::{Cloud, CloudColumn, check_names, decimal, whole_decimal};
@@ -9,6 +10,12 @@ use super::printed::{Printed, with_decimals};
 
 /// Maximum number of fields.
 const MAX_FIELDS: usize = 1024;
+
+/// The versions that are read.
+const VERSIONS: [f64; 3] = [0.5, 0.6, 0.7];
+
+/// How far the length of the viewpoint's quaternion may be from 1. Tuned: three decimals of each part are enough.
+const VIEWPOINT_SLACK: f64 = 0.001;
 
 /// Maximum bytes of the header.
 const MAX_HEADER_BYTES: usize = 1 << 20;
@@ -51,6 +58,16 @@ fn header(file: &[u8]) -> Result<Header, Fault> {
         };
         match key.as_str() {
             key if key.starts_with('#') => {}
+            "VERSION" if !is_version(&values) => {
+                let found = format!("VERSION {}", values.join(" "));
+                return Err(Fault::new(place, found, "VERSION 0.5, 0.6 or 0.7"));
+            }
+            "VIEWPOINT" if !is_pose(&values) => {
+                let found = format!("VIEWPOINT {}", values.join(" "));
+                let expected =
+                    "VIEWPOINT, a position and a unit quaternion, seven numbers: 0 0 0 1 0 0 0 for none";
+                return Err(Fault::new(place, found, expected));
+            }
             "VERSION" | "VIEWPOINT" => {}
             "FIELDS" | "COLUMNS" => names = Some(values),
             "SIZE" => sizes = Some(values),
@@ -91,6 +108,22 @@ fn header(file: &[u8]) -> Result<Header, Fault> {
             }
         }
     }
+}
+
+/// Whether a version is one that is read.
+fn is_version(values: &[String]) -> bool {
+    match values {
+        [value] => value.parse().is_ok_and(|version: f64| VERSIONS.contains(&version)),
+        _ => false,
+    }
+}
+
+/// Whether these are the numbers of a pose. The points are in the frame that is declared of them, whatever it says.
+fn is_pose(values: &[String]) -> bool {
+    let numbers: Vec<f64> = values.iter().filter_map(|value| value.parse().ok()).collect();
+    let is_finite = numbers.iter().all(|number| number.is_finite());
+    let is_unit = |rotation: &[f64]| (DVec4::from_slice(rotation).length() - 1.0).abs() <= VIEWPOINT_SLACK;
+    values.len() == 7 && numbers.len() == 7 && is_finite && is_unit(&numbers[3..])
 }
 
 fn fields(
@@ -194,6 +227,7 @@ pub(super) fn read(file: &[u8], keeps: impl Fn(&str) -> bool) -> Result<Cloud, F
                     format!("{packed} compressed bytes (is the file cut off?)"),
                 ));
             };
+            check_end(&body[8 + packed.len()..])?;
             let bytes = lzf::inflated(packed, length)?;
             // Field by field, all points of each.
             let mut start = 0;
@@ -232,11 +266,26 @@ fn is_of_text(header: &Header, body: &[u8]) -> bool {
 fn of_size<'a>(header: &Header, body: &'a [u8], stride: u64) -> Result<&'a [u8], Fault> {
     let claimed = header.points.checked_mul(stride);
     match claimed.and_then(|claimed| usize::try_from(claimed).ok()).and_then(|claimed| body.get(..claimed)) {
-        Some(bytes) => Ok(bytes),
+        Some(bytes) => {
+            check_end(&body[bytes.len()..])?;
+            Ok(bytes)
+        }
         None => {
             let found = format!("{} bytes", body.len());
             let expected = format!("{stride} for each of {} points (is the file cut off?)", header.points);
             Err(Fault::new("data", found, expected))
+        }
+    }
+}
+
+/// Refuses bytes behind the points: header and numbers then do not belong together. The Point Cloud Library up to 1.8 leaves zeros there, as
+/// it makes a file longer than its numbers.
+fn check_end(surplus: &[u8]) -> Result<(), Fault> {
+    match surplus.iter().all(|&byte| byte == 0) {
+        true => Ok(()),
+        false => {
+            let found = format!("{} bytes after the last point", surplus.len());
+            Err(Fault::new("data", found, "the end of the file, or zeros"))
         }
     }
 }

@@ -4,6 +4,7 @@ use gltf::json::accessor::{Accessor, ComponentType, Type};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Root};
 use raypencil_files::Fault;
+use serde_json::Value;
 
 use crate::gltf::buffers::{Buffers, missing_reference};
 use crate::gltf::elements::{Elements, place, whole};
@@ -31,7 +32,41 @@ pub(super) fn positions(
         );
         component == ComponentType::F32 || (is_quantized && is_used(root, QUANTIZATION))
     };
-    vectors(root, buffers, index, ("POSITION", "vertex"), takes, expected)
+    let positions = vectors(root, buffers, index, ("POSITION", "vertex"), takes, expected)?;
+    check_bounds(accessor(root, index)?, index.value(), &positions)?;
+    Ok(positions)
+}
+
+/// Largest part of a box by which another one may lie beside it. Tuned: bounds of two digits, and those that a tool has not made anew after
+/// it moved a vertex, are taken.
+const BOUNDS_SLACK: f64 = 0.01;
+
+/// Refuses positions that lie beside the bounds that their accessor states: then one of the two is of another mesh. Bounds that are a
+/// little off change nothing, for they are not used.
+fn check_bounds(accessor: &Accessor, index: usize, positions: &[[f64; 3]]) -> Result<(), Fault> {
+    let stated = |value: &Option<Value>| -> Option<[f64; 3]> {
+        let numbers: Vec<f64> = value.as_ref()?.as_array()?.iter().filter_map(Value::as_f64).collect();
+        numbers.try_into().ok()
+    };
+    // Bounds of a normalised accessor are whole numbers, before they are divided. (§3.6.2.5)
+    let (Some(low), Some(high), false) = (stated(&accessor.min), stated(&accessor.max), accessor.normalized)
+    else {
+        return Ok(());
+    };
+    let all = |axis: usize| positions.iter().map(move |position| position[axis]);
+    let least: [f64; 3] = std::array::from_fn(|axis| all(axis).fold(f64::INFINITY, f64::min));
+    let most: [f64; 3] = std::array::from_fn(|axis| all(axis).fold(f64::NEG_INFINITY, f64::max));
+    let size = |low: [f64; 3], high: [f64; 3]| (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
+    let largest = [low, high, least, most].into_iter().flatten().map(f64::abs).fold(0.0, f64::max);
+    let slack = BOUNDS_SLACK * size(low, high).max(size(least, most)) + f64::from(f32::EPSILON) * largest;
+    let is_beside = |axis: usize| least[axis] > high[axis] + slack || most[axis] < low[axis] - slack;
+    match (0..3).any(is_beside) {
+        false => Ok(()),
+        true => {
+            let found = format!("positions in {least:?} to {most:?}, beside min {low:?} and max {high:?}");
+            Err(Fault::new(place(index), found, "positions within min and max (§3.6.2.5)"))
+        }
+    }
 }
 
 /// Vectors of an instance's attribute: F32; of rotations, which have four numbers, also normalised I8 or I16.

@@ -30,7 +30,8 @@ pub(super) fn split(file: &[u8]) -> Result<Container<'_>, Fault> {
         return Err(Fault::new("GLB header", format!("version {version}"), "version 2"));
     }
     let length = length as usize;
-    if !(12..=file.len()).contains(&length) {
+    // Bytes behind that length say that the file was put together, or that another one lies below it.
+    if length < 12 || length != file.len() {
         let found = format!("a length of {length} in a file of {} bytes", file.len());
         let why = if length > file.len() { " (is it cut off?)" } else { "" };
         return Err(Fault::new("GLB header", found, format!("the length of the file{why}")));

@@ -6,6 +6,12 @@ use raypencil_scene::Pose;
 
 use crate::gltf::placement::Placement;
 
+/// Squared lengths that a rotation may have. The coarsest storage of glTF is a normalised byte (§3.6.2.2), which is off by at most 1 / 254:
+/// four of them change the length by at most 1 / 127. Numbers in single precision, or with three decimals, are nearer to 1. The bounds are
+/// a little wider, for the rounding of the products here.
+const MIN_LENGTH_SQUARED: f64 = 125.0 / 126.0 * (125.0 / 126.0);
+const MAX_LENGTH_SQUARED: f64 = 127.0 / 126.0 * (127.0 / 126.0);
+
 /// Transform of a node to its parent's axes; `None` if it has none, so that its vertices are not changed.
 pub(super) fn local(node: &Placement, place: &str) -> Result<Option<DAffine3>, Fault> {
     let finite = |name: &str, numbers: &[f64]| match numbers.iter().all(|number| number.is_finite()) {
@@ -44,8 +50,7 @@ pub(super) fn local(node: &Placement, place: &str) -> Result<Option<DAffine3>, F
     finite("rotation", &rotation)?;
     let [x, y, z, w] = rotation;
     let norm_squared = x * x + y * y + z * z + w * w;
-    // Most writers give a unit quaternion in single precision, to about 1e-7. The larger bound admits fewer digits.
-    if !(0.9..=1.1).contains(&norm_squared) {
+    if !(MIN_LENGTH_SQUARED..=MAX_LENGTH_SQUARED).contains(&norm_squared) {
         let found = format!("rotation {rotation:?}");
         return Err(Fault::new(place, found, "a unit quaternion"));
     }

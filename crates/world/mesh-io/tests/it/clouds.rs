@@ -72,6 +72,12 @@ fn the_three_kinds_of_pcd_are_the_same_cloud() {
             assert!(read(&file[..end]).unwrap_err().contains("cut off"), "{end}");
         }
     }
+    // The Point Cloud Library up to 1.8 leaves zeros behind the points, and nobody leaves anything else there.
+    for file in [&binary, &compressed] {
+        expect(&read(&[&file[..], &[0; 64]].concat()).expect("a cloud"));
+        let message = read(&[&file[..], b"\0more"].concat()).unwrap_err();
+        assert!(message.contains("data: 5 bytes after the last point"), "{message}");
+    }
     let end = text.len() - 3;
     assert!(read(&text.as_bytes()[..end]).unwrap_err().contains("10 numbers; expected 11 numbers"));
 }
@@ -90,6 +96,8 @@ fn vertices_of_ply_are_a_cloud() {
         b"ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
             .to_vec();
     [1.0_f32, 2.0, 3.0].iter().for_each(|part| binary.extend(part.to_be_bytes()));
+    let surplus = read(&[&binary[..], &[0; 4]].concat()).unwrap_err();
+    assert!(surplus.contains("4 bytes after the last row; expected the end of the file"), "{surplus}");
     let cloud = read(&binary).expect("a cloud");
     assert_eq!(cloud.columns[2].values, [3.0]);
     assert_eq!(cloud.columns[2].storage, CloudStorage::Single);
@@ -145,6 +153,20 @@ fn what_is_no_cloud_is_refused_in_one_sentence() {
         ("1 2 3", "1 2 3\n4 5 6", "line 10: a line after the last point"),
         ("VERSION .7", "VERTEX", "file: neither `ply` nor the header of a PCD file"),
         ("HEIGHT 1", "DEPTH 1", "line 6: DEPTH; expected VERSION, FIELDS"),
+        ("VERSION .7", "VERSION 9", "line 1: VERSION 9; expected VERSION 0.5, 0.6 or 0.7"),
+        ("VERSION .7", "VERSION .7 1", "line 1: VERSION .7 1; expected VERSION 0.5"),
+        (
+            "WIDTH 1",
+            "VIEWPOINT nan 2 3 1 0 0 0\nWIDTH 1",
+            "line 5: VIEWPOINT nan 2 3 1 0 0 0; expected VIEWPOINT, a position",
+        ),
+        ("WIDTH 1", "VIEWPOINT 1 2 3\nWIDTH 1", "line 5: VIEWPOINT 1 2 3; expected VIEWPOINT, a position"),
+        ("WIDTH 1", "VIEWPOINT 1 2 3 9 9 9 9\nWIDTH 1", "a unit quaternion, seven numbers"),
+        (
+            "DATA ascii\n1 2 3\n",
+            "DATA binary\n\0\0\0\0\0\0\0\0\0\0\0\0\0zz",
+            "data: 3 bytes after the last point; expected the end of the file, or zeros",
+        ),
     ];
     for (from, to, words) in cases {
         let message = read(good.replace(from, to).as_bytes()).expect_err(to);
@@ -153,6 +175,9 @@ fn what_is_no_cloud_is_refused_in_one_sentence() {
     let ply =
         "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n1 2\n";
     assert!(read(ply.as_bytes()).unwrap_err().contains("no z"));
+    let long = ply.replace("property float y", "property float y\nproperty float z") + " 3\n4 5 6\n";
+    let message = read(long.replace("1 2\n 3", "1 2 3").as_bytes()).unwrap_err();
+    assert!(message.contains("line 9: a line after the last row; expected the end of the file"), "{message}");
     let ply = ply.replace("vertex", "face");
     assert!(read(ply.as_bytes()).unwrap_err().contains("another element first"));
     // Sizes that no file of this length has.

@@ -7,7 +7,9 @@ use ::exr::prelude::{
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 
-use raypencil_files::{Attributes, ExrMap, Limits, Raster, read_exr, read_exr_parts, write_exr};
+use raypencil_files::{
+    Attributes, ExrMap, Limits, Raster, read_channels, read_exr, read_exr_parts, write_exr,
+};
 use raypencil_scene::{FaceId, Hit, Image, Maybe, Quantities, SensorId, SensorMap};
 
 const WIDTH: u32 = 37;
@@ -399,6 +401,50 @@ fn cut_and_changed_files_are_refused() {
     );
     let error = read_exr(folder.0.path(), &Limits::default()).unwrap_err().to_string();
     assert!(error.ends_with("cannot read: not a regular file"), "{error}");
+}
+
+/// Of two attributes of one name some programs take the first, and others the last.
+#[test]
+fn an_attribute_that_is_there_twice_is_refused() {
+    let folder = Folder::new();
+    let (path, good) = small(&folder);
+    let with = |attributes: &[&[u8]]| {
+        // Behind the magic number and the version.
+        std::fs::write(&path, [&good[..8], &attributes.concat(), &good[8..]].concat()).unwrap();
+        refusal(&path, &Limits::default())
+    };
+    let [metres, others]: [&[u8]; 2] = [b"unit\0string\0\x01\0\0\0m", b"unit\0string\0\x02\0\0\0mm"];
+    assert_eq!(with(&[metres, others]), "header: attribute \"unit\" twice; expected each attribute once");
+    assert!(!with(&[metres]).contains("twice"));
+}
+
+#[test]
+fn a_map_that_says_it_is_of_another_sensor_is_refused() {
+    let folder = Folder::new();
+    let file = |name: &str, sensor: &str| {
+        let path = folder.path(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        let mut map = ExrMap::new(2, 1);
+        map.insert("range.T", Raster::F32(Image::filled(2, 1, 1.25)));
+        map.attributes.insert("sensor".into(), sensor.into());
+        write_exr(&path, &map).unwrap();
+        let read = read_channels(folder.0.path(), &Limits::default()).map(|read| read.by_key.len());
+        std::fs::remove_file(&path).unwrap();
+        read.map_err(|error| error.to_string())
+    };
+    for (name, sensor) in
+        [("camera.exr", "beam-0"), ("beam-0.exr", "beam-1"), ("beam-0/range.T.exr", "camera")]
+    {
+        let message = file(name, sensor).unwrap_err();
+        let called = &name[..6];
+        let expected =
+            format!("{name}: attribute sensor: {sensor}; expected {called}, as the file is called");
+        assert!(message.ends_with(&expected), "{message}");
+    }
+    // The same one, and names that say nothing of a sensor.
+    for (name, sensor) in [("camera.exr", "camera"), ("mine.exr", "camera"), ("camera.exr", "Nikon D850")] {
+        assert_eq!(file(name, sensor), Ok(1), "{name}");
+    }
 }
 
 /// Two blocks of one place leave another place without numbers.

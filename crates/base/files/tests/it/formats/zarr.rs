@@ -119,6 +119,12 @@ fn what_is_not_read_is_refused_by_name() {
     assert!(large.contains("shape: [3, 5] in chunks of [8589934592, 8589934592]; expected 1 to"), "{large}");
     assert!(with("[3, 5]", "[9, 5]").contains("chunk c/2/0: not there; expected a file for every chunk"));
     assert!(with("\"shape\"", "\"form\"").contains("zarr.json: missing field `shape`"));
+    // What the specification requires. Without it the order of bytes would be guessed.
+    let bare = r#"{"name": "bytes"}"#;
+    assert!(with(bytes, bare).contains("depth: codecs, endian: not there; expected little or big"));
+    assert!(with("\"fill_value\": 0,", "").contains("depth: fill_value: not there; expected a number"));
+    let rubbish = with("\"fill_value\": 0", "\"fill_value\": \"rubbish\"");
+    assert!(rubbish.contains("depth: fill_value: \"rubbish\"; expected a number, true or false, \"NaN\""));
     chunked(folder.path(), |document| document);
     fs::write(store.join("depth/c/1/2"), [0; 7]).unwrap();
     assert!(refusal(&store).contains("chunk c/1/2: 7 bytes; expected the 8 of its shape"));
@@ -171,6 +177,18 @@ fn a_description_that_asks_not_to_be_read_so_is_refused() {
             r#""dimension_names": ["axis", null]"#.into(),
             "depth: dimension_names: axis, ?; expected row, column",
         ),
+        (
+            r#""dimension_names": ["Column", "Row"]"#.into(),
+            "depth: dimension_names: Column, Row; expected row, column",
+        ),
+        (
+            r#""dimension_names": ["row"]"#.into(),
+            "depth: dimension_names: 1 names; expected 2, one for each length of shape",
+        ),
+        (
+            attributes(r#""_ARRAY_DIMENSIONS": ["column", "row"]"#),
+            "depth: _ARRAY_DIMENSIONS: column, row; expected row, column",
+        ),
     ] {
         let more: String = more;
         document(&more);
@@ -198,13 +216,15 @@ fn groups_say_what_must_be_understood_and_arrays_of_other_shapes_do_not() {
     let store = folder.path().join("s.zarr");
     let group = |more: &str| {
         chunked(folder.path(), |document| document);
-        let text = format!(r#"{{"zarr_format": 3, "node_type": "group", "attributes": {{}}, {more}}}"#);
+        let text = format!(r#"{{"zarr_format": 3, "node_type": "group", {more}}}"#);
         fs::write(store.join("zarr.json"), text).unwrap();
     };
     group(r#""foo": {"must_understand": true}"#);
     assert!(
         refusal(&store).contains("zarr.json, key \"foo\": {\"must_understand\":true}; expected no extension")
     );
+    group(r#""attributes": {"scale_factor": 2}"#);
+    assert!(refusal(&store).contains("attributes, scale_factor: 2; expected 1 or none"));
     group(r#""consolidated_metadata": {"kind": "inline", "must_understand": false, "metadata": {}}"#);
     assert_eq!(read_zarr(&store, &Limits::default()).unwrap().len(), 1);
     chunked(folder.path(), |document| {

@@ -54,13 +54,7 @@ fn rows(header: &Header<'_>, mut numbers: impl Numbers) -> Result<Parts, Fault> 
         match element.name {
             b"vertex" => read_vertices(element, &mut numbers, &mut parts)?,
             b"face" => read_faces(element, vertices.count, &mut numbers, &mut parts)?,
-            _ => {
-                for _ in 0..element.count {
-                    numbers.begin_row()?;
-                    element.properties.iter().try_for_each(|property| skip(property, &mut numbers))?;
-                    numbers.end_row()?;
-                }
-            }
+            _ => skip_rows(element, &mut numbers)?,
         }
     }
     // CHOICE: surplus rows are refused as well. Header and numbers then do not belong together. In a binary file every
@@ -69,7 +63,7 @@ fn rows(header: &Header<'_>, mut numbers: impl Numbers) -> Result<Parts, Fault> 
     Ok(parts)
 }
 
-/// Reads those properties of the vertices that `keeps` names, as the fields of a cloud. Whatever follows the vertices is left alone.
+/// Reads those properties of the vertices that `keeps` names, as the fields of a cloud. Other elements are skipped.
 pub(crate) fn cloud(file: &[u8], keeps: impl Fn(&str) -> bool) -> Result<Vec<CloudColumn>, Fault> {
     let header = header::read(file)?;
     match header.format {
@@ -122,7 +116,19 @@ fn columns(
         }
         numbers.end_row()?;
     }
+    header.elements[1..].iter().try_for_each(|element| skip_rows(element, &mut numbers))?;
+    // As of a mesh: surplus rows say that header and numbers do not belong together, and that points are missing.
+    numbers.finish()?;
     Ok(with_decimals(columns.into_iter().flatten().collect()))
+}
+
+fn skip_rows(element: &Element<'_>, numbers: &mut impl Numbers) -> Result<(), Fault> {
+    for _ in 0..element.count {
+        numbers.begin_row()?;
+        element.properties.iter().try_for_each(|property| skip(property, numbers))?;
+        numbers.end_row()?;
+    }
+    Ok(())
 }
 
 /// Refuses rows that cannot be in the file, before memory is asked for.

@@ -57,6 +57,13 @@ fn containers_that_are_broken_are_refused() {
         &format!("GLB header: a length of 11 in a file of {length} bytes; expected the length of the file"),
     );
     bytes_refused(
+        &[&good[..], b"zz"].concat(),
+        &format!(
+            "GLB header: a length of {length} in a file of {} bytes; expected the length of the file",
+            length + 2
+        ),
+    );
+    bytes_refused(
         &good[..length - 4],
         &format!(
             "GLB header: a length of {length} in a file of {} bytes; expected the length of the file (is it cut off?)",
@@ -75,11 +82,11 @@ fn containers_that_are_broken_are_refused() {
         "GLB chunk 0: type \"\\x00\\x00\\x00\\x00\"; expected first JSON, then at most one BIN, then other types",
     );
     bytes_refused(&with(8, 12)[..12], "GLB chunk 0: nothing; expected a JSON chunk");
-    bytes_refused(&with(8, 16), "GLB chunk 0: 4 bytes left; expected 8 bytes of a chunk header");
-    // Bytes after the declared length, and chunks of unknown types, are skipped.
+    bytes_refused(&with(8, 16)[..16], "GLB chunk 0: 4 bytes left; expected 8 bytes of a chunk header");
+    // Chunks of unknown types are skipped, within the declared length.
     let mut longer = good.clone();
     longer.extend(b"\x04\0\0\0XTRAabcd");
-    assert!(mesh_from_bytes(&longer, Path::new("x"), 0.25).is_ok());
+    assert!(mesh_from_bytes(&longer, Path::new("x"), 0.25).is_err());
     longer[8..12].copy_from_slice(&(length as u32 + 12).to_le_bytes());
     assert!(mesh_from_bytes(&longer, Path::new("x"), 0.25).is_ok());
     longer[length + 4..length + 8].copy_from_slice(b"BIN\0");

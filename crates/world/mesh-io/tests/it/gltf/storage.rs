@@ -34,6 +34,39 @@ fn indices_of_every_width_and_none() {
 }
 
 #[test]
+fn positions_beside_the_bounds_of_their_accessor_are_refused() {
+    let with = |low: [f64; 3], high: [f64; 3]| {
+        changed(|json| {
+            json["accessors"][0]["min"] = json!(low);
+            json["accessors"][0]["max"] = json!(high);
+        })
+    };
+    // The square is flat and 1 wide. Bounds that are a little off, or too wide, say of the same mesh.
+    for (low, high) in
+        [([0.0, 0.0, -1.0], [1.0, 0.0, 0.0]), ([0.2, -1e-7, -0.9], [0.9, -1e-7, -0.1]), ([-5.0; 3], [5.0; 3])]
+    {
+        with(low, high).expect("a mesh");
+    }
+    let message = with([5.0; 3], [6.0; 3]).unwrap_err();
+    assert!(message.contains("accessor 0: positions in [0.0, 0.0, -1.0] to [1.0, 0.0, 0.0], "), "{message}");
+    assert!(message.contains("beside min [5.0, 5.0, 5.0] and max [6.0, 6.0, 6.0]; expected"), "{message}");
+    for axis in 0..3 {
+        let (mut low, mut high) = ([-2.0; 3], [2.0; 3]);
+        (low[axis], high[axis]) = (-4.0, -3.0);
+        with(low, high).unwrap_err();
+        (low[axis], high[axis]) = (2.0, 3.0);
+        with(low, high).unwrap_err();
+    }
+    // Bounds of normalised numbers are those before the division.
+    let quantized = changed(|json| {
+        json["accessors"][0]["normalized"] = json!(true);
+        json["accessors"][0]["min"] = json!([5, 5, 5]);
+        json["accessors"][0]["max"] = json!([6, 6, 6]);
+    });
+    assert!(quantized.is_ok(), "{quantized:?}");
+}
+
+#[test]
 fn indices_of_16_bits_are_unsigned() {
     // Component type 5123 is UNSIGNED_SHORT (glTF 2.0, §5.1.3): the indices of the square after 39996 other vertices have
     // their highest bit set.

@@ -36,14 +36,21 @@ fn faces_keep_their_order_and_look_up() {
 
 #[test]
 fn a_quaternion_of_few_digits_turns_and_does_not_scale() {
-    for (square_length, is_read) in [(0.901, true), (1.099, true), (0.899, false), (1.101, false)] {
-        let part = f64::sqrt(square_length / 2.0);
+    // As far from 1 as four normalised bytes may be; and what is further is no rotation.
+    for (length, is_read) in [
+        (126.0 / 127.0, true),
+        (128.0 / 127.0, true),
+        (0.707 * f64::sqrt(2.0), true),
+        (0.99, false),
+        (1.02, false),
+    ] {
+        let part = length / f64::sqrt(2.0);
         let found = changed(|json| json["nodes"][0]["rotation"] = json!([part, 0, 0, part]));
-        assert_eq!(found.is_ok(), is_read, "{square_length}: {found:?}");
+        assert_eq!(found.is_ok(), is_read, "{length}: {found:?}");
         // A quarter turn about x of a square of side 1, whatever the length.
         let Ok(mesh) = found else { continue };
         let [low, high] = mesh.bounds().unwrap();
-        assert!(((high - low).max_element() - 1.0).abs() < 1e-6, "{square_length}");
+        assert!(((high - low).max_element() - 1.0).abs() < 1e-6, "{length}");
     }
 }
 
