@@ -67,7 +67,7 @@ impl Axis {
                 None if room == 0 => {
                     return Err(SweepError::axis(text, format!("expected at most {MAX_VALUES} values")));
                 }
-                None => rows.push(vec![part.to_string()]),
+                None => rows.push(vec![in_decimals(part)]),
             }
         }
         let values: Vec<Meaning> = rows.iter().map(|row| Meaning::of(&row[0])).collect();
@@ -110,13 +110,25 @@ impl Axis {
         let mut rows = Vec::new();
         for record in reader.records() {
             let record = record.map_err(|error| refused(error.to_string()))?;
-            rows.push(record.iter().map(String::from).collect());
+            rows.push(record.iter().map(in_decimals).collect());
         }
         if rows.is_empty() {
             return Err(refused("there is no run; expected keys in the first line and values below".into()));
         }
         Ok(Self { keys, rows })
     }
+}
+
+/// A value as tables have it: a whole number of TOML in base 16, 8 or 2 in decimals, so that a column of numbers stays one.
+fn in_decimals(value: &str) -> String {
+    let of_base = |(prefix, base)| {
+        let digits = value.strip_prefix(prefix)?;
+        // TOML has underscores between two digits alone.
+        let is_split = digits.split('_').all(|part| !part.is_empty() && !part.starts_with(['+', '-']));
+        is_split.then(|| i64::from_str_radix(&digits.replace('_', ""), base).ok())?
+    };
+    let number = [("0x", 16), ("0o", 8), ("0b", 2)].into_iter().find_map(of_base);
+    number.map_or_else(|| value.to_string(), |number| number.to_string())
 }
 
 /// What a value means: `30`, `3e1` and `30.0` are one number, and `facets` is the text of `"facets"`.
@@ -244,6 +256,9 @@ mod tests {
         assert_eq!(values("a=0.05:2.05:1"), ["0.05", "1.05", "2.05"]);
         assert_eq!(values("a=1e-1:5e-1:1e-1"), ["1e-1", "2e-1", "3e-1", "4e-1", "5e-1"]);
         assert_eq!(values("a=1e3:1.2e3:1e2"), ["1e3", "1.1e3", "1.2e3"]);
+        // Whole numbers of another base, as tables and charts have them; and what TOML takes for none.
+        assert_eq!(values("a=0x1f,0o17,0b1_01"), ["31", "15", "5"]);
+        assert_eq!(values("a=0xg,0x_1,0x+1,\"0x10\""), ["0xg", "0x_1", "0x+1", "\"0x10\""]);
         // A text of digits is no number.
         assert_eq!(values("a=30,\"30\""), ["30", "\"30\""]);
         // No numbers: a text with colons.
@@ -298,6 +313,8 @@ mod tests {
             ("a=30,31,30.0", "30.0 is given twice"),
             ("a=0,-0.0", "-0.0 is given twice"),
             ("a=1_000,1e3", "1e3 is given twice"),
+            ("a=0x10,16", "16 is given twice"),
+            ("a=16,0b1_0000", "16 is given twice"),
             ("a=facets,\"facets\"", "\"facets\" is given twice"),
             ("a=20:35", "20:35: a range needs a step; expected FIRST:LAST:STEP, such as 20:35:5"),
             ("a=7,20:", "a range needs a step"),
@@ -320,6 +337,8 @@ mod tests {
         let list = Axis::read_list(&path).unwrap();
         assert_eq!(list.keys, ["camera.pitch_down_deg", "vehicle.position_m"]);
         assert_eq!(list.rows, [["20", "[1, 2]"], ["25", "[0,0]"]]);
+        std::fs::write(&path, "camera.width_px\n0x10\n").unwrap();
+        assert_eq!(Axis::read_list(&path).unwrap().rows, [["16"]]);
         let most = (0..1000).map(|k| format!("k{k}")).collect::<Vec<_>>().join(",");
         std::fs::write(&path, format!("{most}\n{}\n", ["1"; 1000].join(","))).unwrap();
         assert_eq!(Axis::read_list(&path).unwrap().keys.len(), 1000);
