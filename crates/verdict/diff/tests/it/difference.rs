@@ -194,6 +194,10 @@ fn a_share_of_cells_may_differ_but_none_beyond_the_hard_limit() {
     assert!(fails(Thresholds { fail: 5.0, hard_fail: Some(2.9), ..NONE }));
     let nan = singles(&[f64::NAN, 1.0], &[1.0; 2], &hard(1e300));
     assert_eq!((nan.beyond_hard, nan.fails), (1, true));
+    // What has no size is one of the cells of the share, as a hit beside a silhouette is, and no more.
+    let beside = |thresholds| singles(&[f64::NAN, 1.0, f64::INFINITY, 1.0], &[1.0; 4], &thresholds).fails;
+    assert!(!beside(Thresholds { fail_percent: 50.0, ..NONE }));
+    assert!(beside(Thresholds { fail_percent: 49.9, fail: f64::INFINITY, ..NONE }));
 }
 
 #[test]
