@@ -534,7 +534,14 @@ fn maybe_signed(
         if !hit && !is_nothing {
             let nothing = if is_length { "+Inf" } else { "NaN" };
             let expected = format!("{nothing}, as {speaker} says that nothing is hit");
-            return wrong(expected, Some(declare_miss(value, channel.storage)));
+            // To declare this number in place of the other would make that one wrong again.
+            let help = match conventions.miss {
+                None => declare_miss(value, channel.storage),
+                Some(miss) => format!(
+                    "write {nothing} where nothing is hit: one number alone can be declared to mean that, and {miss} is"
+                ),
+            };
+            return wrong(expected, Some(help));
         }
         cells.push(Maybe::from(hit.then_some(value)));
     }

@@ -65,8 +65,9 @@ fn a_number_for_no_hit_is_suggested_and_can_be_declared() {
         let declare = format!("declare --miss {word} to check, or \"miss\": {word} in its candidate.json");
         assert_trouble(&check(folder.path(), "pyramids", &[]), &["`range.T` at", "+Inf", "help", &declare]);
         assert_passes(&check(folder.path(), "pyramids", &["--miss", word]));
-        // Another number declares nothing.
-        assert_trouble(&check(folder.path(), "pyramids", &["--miss", "7"]), &["`range.T` at"]);
+        // Another number declares nothing, and to declare this one in its place is no remedy for the other.
+        let only = "write +Inf where nothing is hit: one number alone can be declared to mean that, and 7 is";
+        assert_trouble(&check(folder.path(), "pyramids", &["--miss", "7"]), &["`range.T` at", only]);
     }
 }
 
