@@ -61,6 +61,7 @@ pub fn check_any_pack(
     let form = pack_form(pack);
     // A pack that is not there has its own words.
     if pack.exists() {
+        refuse_exchanged(pack, candidate)?;
         refuse_other_kinds(form, candidate)?;
     }
     Ok(match form {
@@ -79,6 +80,22 @@ pub fn check_any_pack(
             CheckedPack::Sensors { checked: Box::new(checked), sets }
         }
     })
+}
+
+/// Whether a folder has the list of a pack of any form.
+fn is_any_pack(folder: &Path) -> bool {
+    is_ray_pack(folder) || is_input_pack(folder) || folder.join("manifest.json").is_file()
+}
+
+/// Refuses a pack that is none beside a candidate that is one: the two are exchanged.
+fn refuse_exchanged(pack: &Path, candidate: &Path) -> Result<(), CheckError> {
+    if is_any_pack(pack) || !is_any_pack(candidate) {
+        return Ok(());
+    }
+    let found = format!("no pack, and the candidate, {}, is one", candidate.display());
+    let expected =
+        "the pack first, then the candidate: `raypencil check PACK CANDIDATE` (are the two exchanged?)";
+    Err(FileError::Recording(Fault::new("pack", found, expected).in_file(pack)).into())
 }
 
 /// Refuses a candidate that is of no use for a pack of this form, and says what it is.

@@ -236,6 +236,18 @@ fn packs_of_rays_judge_arrays() {
         "{shown}"
     );
     assert!(folder.path().join("checked/junit.xml").is_file());
+    // Whichever pack it is, and whatever the candidate is of: what is no pack is named as such.
+    for candidate in ["mine", "mine/t.npy"] {
+        assert_trouble(
+            &raypencil(folder.path(), &["check", candidate, "pack"]),
+            &[
+                &format!("{candidate}: pack: no pack, and the candidate, pack, is one"),
+                "`raypencil check PACK CANDIDATE` (are the two exchanged?)",
+            ],
+        );
+    }
+    let neither = text(&raypencil(folder.path(), &["check", "mine", "mine"]).stderr);
+    assert!(!neither.contains("exchanged"), "{neither}");
     let check = fs::read_to_string(folder.path().join("checked/check.json")).unwrap();
     let check: serde_json::Value = serde_json::from_str(&check).unwrap();
     assert_eq!((&check["kind"], &check["verdict"]), (&"rays".into(), &"agrees".into()));
