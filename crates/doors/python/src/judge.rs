@@ -143,6 +143,8 @@ pub(crate) fn judge<'py>(
             normal: errors("normal"),
             barycentric: errors("barycentric"),
             cos_incidence: errors("cos_incidence"),
+            // What is said of a comparison calls nothing exact.
+            coarse: Vec::new(),
         },
     };
     let mesh = mesh.clone();

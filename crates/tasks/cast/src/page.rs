@@ -25,9 +25,13 @@ const SURE_CHANNELS: usize = 8;
 /// Maximum number of rays that a page describes in full.
 const MAX_DESCRIBED_RAYS: usize = 1000;
 
-/// How the numbers of a page are to be read.
-const NUMBERS: &str = "The numbers of this page are in single precision; the arrays beside it have all digits. Lengths are in the mesh's \
-                       own unit, which the scales call m.";
+/// How the numbers of a page are to be read; whether the arrays that it shows stand beside it.
+fn of_numbers(has_arrays: bool) -> String {
+    let arrays = if has_arrays { "; the arrays beside it have all digits" } else { "" };
+    format!(
+        "The numbers of this page are in single precision{arrays}. Lengths are in the mesh's own unit, which the scales call m."
+    )
+}
 
 /// A cast as a page shows it.
 #[derive(Clone, Copy)]
@@ -48,6 +52,8 @@ pub struct CastPage<'a> {
     pub set: Option<&'a NamedRaySet>,
     /// The scan, if the rays have one.
     pub scan: Option<PageScan<'a>>,
+    /// Whether the arrays of the answers stand beside the page.
+    pub has_arrays: bool,
     /// Another program's first hits.
     pub compared: Option<ComparedHits<'a>>,
 }
@@ -101,6 +107,7 @@ impl CastPage<'_> {
     ///     mesh: None,
     ///     set: None,
     ///     scan: None,
+    ///     has_arrays: false,
     ///     compared: None,
     /// };
     /// assert!(page.document().page()?.contains("<h1>two rays on &#60;a mesh&#62;</h1>"));
@@ -174,7 +181,7 @@ impl CastPage<'_> {
     /// The part that answers when asked, as HTML, and sentences on what it shows.
     pub(crate) fn explorer_with_notes(&self) -> (String, Vec<String>) {
         let (html, layout, left_out) = self.explorer();
-        let words = [layout, left_out, NUMBERS.to_string()];
+        let words = [layout, left_out, of_numbers(self.has_arrays)];
         (html, words.into_iter().filter(|words| !words.is_empty()).collect())
     }
 

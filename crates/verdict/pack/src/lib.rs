@@ -67,7 +67,7 @@ pub use blind::{blind_scene, blind_subject};
 pub use check::{CheckError, Checked, Verified, check_pack, check_pack_by};
 pub use check_report::{
     BundleFindings, CheckFindings, ItemFindings, PackForm, Said, WorstOf, WrongRay, check_suite,
-    items_not_given, not_given, rays_not_given, write_document,
+    half_precision_note, items_not_given, not_given, rays_not_given, write_document,
 };
 pub use claims::Found;
 pub use clauses::{ClauseRays, MIN_RAYS_PER_CLAUSE, can_count_clauses, clause_rays};

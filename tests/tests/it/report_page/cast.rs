@@ -52,6 +52,7 @@ pub fn with_one_wrong() -> TempDir {
         mesh: Some(&mesh),
         set: None,
         scan: None,
+        has_arrays: true,
         compared: Some(ComparedHits {
             name: "one-wrong",
             stated: &stated,
@@ -114,6 +115,7 @@ fn answers_alone_have_one_side() {
         mesh: Some(&mesh),
         set: None,
         scan: None,
+        has_arrays: true,
         compared: None,
     };
     let folder = tempfile::tempdir().expect("a folder");
@@ -147,6 +149,7 @@ fn what_is_too_near_is_told_from_a_miss() {
         mesh: Some(&mesh),
         set: None,
         scan: None,
+        has_arrays: true,
         compared: None,
     };
     let folder = tempfile::tempdir().expect("a folder");
@@ -189,6 +192,7 @@ fn a_scan_has_its_angles_and_its_points_in_3d() {
         mesh: Some(&floor),
         set: None,
         scan: Some(PageScan::of(&set)),
+        has_arrays: true,
         compared: Some(ComparedHits {
             name: "other",
             stated: &stated,

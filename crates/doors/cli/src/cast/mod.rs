@@ -237,7 +237,18 @@ fn write_page(
     let compared = compared.as_ref().map(|compared| compared.hits(&ray_command));
     let scan = set.map(PageScan::of);
     let mesh = Some(mesh);
-    let page = CastPage { title: &title, facts: &facts, shape, rays, answers, mesh, set, scan, compared };
+    let page = CastPage {
+        title: &title,
+        facts: &facts,
+        shape,
+        rays,
+        answers,
+        mesh,
+        set,
+        scan,
+        has_arrays: true,
+        compared,
+    };
     write_cast_page(folder, &page)?;
     Ok(())
 }

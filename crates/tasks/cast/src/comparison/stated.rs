@@ -1,5 +1,7 @@
 //! First hits as another program states them.
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
 use raypencil_scene::{CastRay, FaceId, Side, Sides, Triangles};
 
@@ -52,9 +54,17 @@ pub struct StoredErrors {
     pub barycentric: Option<Vec<f64>>,
     /// Of `cos_incidence`.
     pub cos_incidence: Option<Vec<f64>>,
+    /// Of each value that is stored more coarsely than in single precision: how, in words. None of them is exact.
+    pub coarse: Vec<(CastValue, String)>,
 }
 
 impl StoredErrors {
+    /// How coarsely the values are stored, in words: `half precision`, `steps of 0.001 m`; `None` if all are finer.
+    pub fn coarseness(&self) -> Option<String> {
+        let words: BTreeSet<&str> = self.coarse.iter().map(|(_, words)| words.as_str()).collect();
+        (!words.is_empty()).then(|| words.into_iter().collect::<Vec<_>>().join(" and "))
+    }
+
     /// The error of a value of a ray; 0 if it is stored as it was computed.
     pub(crate) fn of(&self, value: CastValue, index: usize) -> f64 {
         let errors = match value {
@@ -232,6 +242,7 @@ impl Stated {
                 normal: some(&self.stored.normal, indices),
                 barycentric: some(&self.stored.barycentric, indices),
                 cos_incidence: some(&self.stored.cos_incidence, indices),
+                coarse: self.stored.coarse.clone(),
             },
         }
     }

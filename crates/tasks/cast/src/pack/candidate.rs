@@ -8,7 +8,7 @@ use raypencil_rosbag::CloudChoice;
 use raypencil_scene::{FaceId, Side};
 
 use crate::cloud::CloudFrame;
-use crate::comparison::{Stated, StoredErrors};
+use crate::comparison::{CastValue, Stated, StoredErrors};
 use crate::pack::clouds::bag_within;
 use crate::pack::unread::unread;
 
@@ -55,15 +55,25 @@ pub fn read_candidate(
     refuse_file(folder)?;
     let reader = Reader { folder, shape, count: shape.iter().product() };
     let vectors = |name: &str| -> Result<Stored<DVec3>, FileError> {
-        let (numbers, errors) = reader.numbers(name, &[3])?;
-        Ok((numbers.map(|numbers| numbers.chunks_exact(3).map(DVec3::from_slice).collect()), errors))
+        let (numbers, errors, how) = reader.numbers(name, &[3])?;
+        Ok((numbers.map(|numbers| numbers.chunks_exact(3).map(DVec3::from_slice).collect()), errors, how))
     };
-    let ((t, of_t), (range, of_range)) = (reader.numbers("t", &[])?, reader.numbers("range", &[])?);
-    let (point, of_point) = vectors("point")?;
-    let (normal, of_normal) = vectors("normal")?;
-    let (barycentric, of_barycentric) = vectors("barycentric")?;
-    let (cos_incidence, of_cos_incidence) = reader.numbers("cos_incidence", &[])?;
-    let (sides, of_side) = reader.numbers("side", &[])?;
+    let ((t, of_t, t_how), (range, of_range, range_how)) =
+        (reader.numbers("t", &[])?, reader.numbers("range", &[])?);
+    let (point, of_point, point_how) = vectors("point")?;
+    let (normal, of_normal, normal_how) = vectors("normal")?;
+    let (barycentric, of_barycentric, barycentric_how) = vectors("barycentric")?;
+    let (cos_incidence, of_cos_incidence, cos_incidence_how) = reader.numbers("cos_incidence", &[])?;
+    let (sides, of_side, _) = reader.numbers("side", &[])?;
+    let how = [
+        (CastValue::T, t_how),
+        (CastValue::Range, range_how),
+        (CastValue::Point, point_how),
+        (CastValue::Normal, normal_how),
+        (CastValue::Barycentric, barycentric_how),
+        (CastValue::CosIncidence, cos_incidence_how),
+    ];
+    let coarse = how.into_iter().filter_map(|(value, how)| Some((value, how?.coarse_words()?))).collect();
     let side = |(ray, number): (usize, &f64)| match *number {
         1.0 => Ok(Some(Side::Front)),
         -1.0 => Ok(Some(Side::Back)),
@@ -82,6 +92,7 @@ pub fn read_candidate(
         normal: of_normal,
         barycentric: of_barycentric,
         cos_incidence: of_cos_incidence,
+        coarse,
     };
     let hit = reader.hits()?;
     let mut stated =
@@ -136,8 +147,8 @@ fn short(number: f64) -> String {
     if is_plain { number.to_string() } else { format!("{number:e}") }
 }
 
-/// Values, and how far storing may have moved each of them.
-type Stored<T> = (Option<Vec<T>>, Option<Vec<f64>>);
+/// Values, how far storing may have moved each of them, and the type in which they are stored.
+type Stored<T> = (Option<Vec<T>>, Option<Vec<f64>>, Option<Storage>);
 
 /// How far storing may have moved the value of a ray.
 fn error_of(errors: &Option<Vec<f64>>, ray: usize) -> f64 {
@@ -172,7 +183,7 @@ impl Reader<'_> {
     ) -> Result<Option<Vec<Option<FaceId>>>, FileError> {
         // Single precision rounds 4294967295 to 4294967296, which is no face either.
         let none = [-1.0, f64::from(u32::MAX), f64::from(u32::MAX as f32)];
-        let (numbers, errors) = self.numbers("face", &[])?;
+        let (numbers, errors, _) = self.numbers("face", &[])?;
         let face = |(ray, number): (usize, f64)| match number {
             number if !number.is_finite() || none.contains(&number) => Ok(None),
             number
@@ -210,7 +221,7 @@ impl Reader<'_> {
                 Err(self.fault("hit", format!("cell {ray}"), number.to_string(), expected))
             }
         };
-        let (numbers, _) = self.numbers("hit", &[])?;
+        let (numbers, ..) = self.numbers("hit", &[])?;
         numbers
             .map(|numbers| numbers.into_iter().enumerate().map(hit).collect::<Result<Vec<_>, _>>())
             .transpose()
@@ -228,12 +239,12 @@ impl Reader<'_> {
     }
 
     /// The numbers of an array, if the folder has it, whose shape is that of the rays and then `last`; beside them how far storing may
-    /// have moved those of each ray.
+    /// have moved those of each ray, and their type.
     fn numbers(&self, name: &str, last: &[u64]) -> Result<Stored<f64>, FileError> {
         let path = self.folder.join(format!("{name}.npy"));
         // A link that leads nowhere is a fault, and no array that was left out.
         if path.symlink_metadata().is_err() {
-            return Ok((None, None));
+            return Ok((None, None, None));
         }
         let array = read_npy_numbers(&path, &Limits::default())?;
         let of_rays: Vec<u64> = self.shape.iter().chain(last).copied().collect();
@@ -243,6 +254,6 @@ impl Reader<'_> {
             return Err(self.fault(name, "shape", format!("{:?}", array.shape), expected));
         }
         let errors = errors_of_storing(&array, last.iter().product::<u64>() as usize);
-        Ok((Some(array.values), errors))
+        Ok((Some(array.values), errors, Some(array.storage)))
     }
 }

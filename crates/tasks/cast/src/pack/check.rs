@@ -326,7 +326,11 @@ fn judge(
         Some(sentence + &beside)
     });
     let answers = cast_with(exact, rays, sides, Questions::default(), progress);
-    let cloud = case.map(|case| case.facts);
+    let cloud = case.map(|case| {
+        let bare = (case.facts.steps.is_some() && wrong.is_empty()).then(|| case.stated_as_if_exact());
+        let excused = |bare| compare_with(exact, mesh, rays, sides, &bare, precision).counts().wrong;
+        CloudFacts { excused: bare.map_or(0, excused), ..case.facts }
+    });
     let of_fields = cloud.as_ref().and_then(CloudFacts::why);
     let why = match why {
         // Whatever makes every ray a miss would explain it.

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use raypencil_judge::Class;
 use raypencil_pack::{
     BundleFindings, CheckFindings, ItemFindings, PackForm, PackLabel, Said, WorstOf, WrongRay,
+    half_precision_note,
 };
 use raypencil_report::{DefectLine, Document, count, counted};
 use raypencil_scene::{FaceId, Reading};
@@ -48,6 +49,7 @@ impl RayPackChecked {
             answers: &self.answers,
             mesh: self.mesh.as_ref(),
             set: None,
+            has_arrays: false,
             scan: self.scan.as_ref().map(|scan| scan.on_page("scan")),
             compared: Some(ComparedHits {
                 name: &self.name,
@@ -76,7 +78,7 @@ impl RayPackChecked {
             arithmetic: Some(self.comparison.precision),
             totals: bundle.items.clone(),
             worst: bundle.listed.iter().map(|wrong| wrong.line.clone()).collect(),
-            coarseness: None,
+            coarseness: self.stated.stored.coarseness(),
             headline: self.headline(),
             why: self.why.clone(),
             notes: self.notes(),
@@ -103,7 +105,13 @@ impl RayPackChecked {
         if !self.unread.is_empty() {
             notes.push(format!("Not read, for no array has that name: {}.", self.unread.join(", ")));
         }
-        let Some(cloud) = &self.cloud else { return notes };
+        let Some(cloud) = &self.cloud else {
+            let halves: Vec<&str> = self.stated.stored.coarse.iter().map(|(value, _)| value.name()).collect();
+            if !halves.is_empty() {
+                notes.push(format!("{}.", half_precision_note(&halves.join(", "))));
+            }
+            return notes;
+        };
         let range = cloud.has_range.then_some("range");
         let fields: Vec<&str> = cloud.keys.iter().map(String::as_str).chain(range).collect();
         let fields = match fields[..] {
@@ -120,8 +128,24 @@ impl RayPackChecked {
         ));
         if !cloud.unjudged.is_empty() {
             notes.push(format!(
-                "Not judged, as the pack knows nothing of them, or another field tells the same: {}.",
+                "Not judged, as the pack knows nothing of them, or another field was judged in their place: {}.",
                 cloud.unjudged.join(", ")
+            ));
+        }
+        if let Some(steps) = &cloud.steps {
+            let needed = match cloud.excused {
+                _ if !self.comparison.passes() => String::new(),
+                0 => " No point is further off than arithmetic alone explains.".into(),
+                1 => " 1 point is further off than arithmetic alone explains, and agrees by that.".into(),
+                more => {
+                    format!(
+                        " {} points are further off than arithmetic alone explains, and agree by that.",
+                        count(more)
+                    )
+                }
+            };
+            notes.push(format!(
+                "Its numbers are printed in {steps} and judged as such: errors below half a step cannot be seen.{needed}"
             ));
         }
         if let Some(places) = cloud.returns_of_beam {
@@ -295,6 +319,7 @@ impl RayPackChecked {
                 .collect(),
             listed: listed.collect(),
             why: self.why.clone(),
+            coarseness: self.stated.stored.coarseness(),
         }
     }
 

@@ -554,9 +554,81 @@ fn points_that_no_rule_lays_on_rays_are_refused_with_the_remedy() {
     let message = trial.check(&file, CandidateConventions::default()).expect_err("a refusal");
     assert!(
         message.contains("belong to no ray that is known")
-            && message.contains("`ring` (or `channel`) and `time`"),
+            && message
+                .contains("expected the fields `ring` (or `channel`) and `time`, or one point for each ray"),
         "{message}"
     );
+    // The fields are there, of other rays: to add them is no remedy.
+    let others: Vec<Point> = dense
+        .iter()
+        .enumerate()
+        .map(|(k, one)| Point { time: (k / 7) as f64 * 1e-3, ring: (k % 3) as u16, ..*one })
+        .collect();
+    let file = trial.write(&others, Fields::Keys, [others.len(), 1]);
+    let message = trial.check(&file, CandidateConventions::default()).expect_err("a refusal");
+    let expected =
+        "expected the fields `ring` (or `channel`) and `time` to be those of the pack's rays, or one point";
+    assert!(message.contains(expected), "{message}");
+}
+
+/// The pack of plain rays has no times: whatever fields the points have, only their order tells.
+#[test]
+fn fields_are_no_remedy_where_the_pack_has_no_times() {
+    use raypencil_cast::{CastSource, RayArray, write_ray_pack};
+    use raypencil_scene::{Sides, Silent};
+
+    let trial = Trial::new(&head(), &still());
+    let all = points(&trial.set, CloudFrame::Mesh);
+    // Each ray twice: no direction tells them apart.
+    let once = trial.set.set.rays().to_vec();
+    let rays = RayArray { shape: vec![2 * once.len() as u64], rays: [once.clone(), once].concat() };
+    let pack = trial.folder.path().join("plain");
+    write_ray_pack(&pack, (&room(), &rays, Sides::Both), &CastSource::default(), &Silent).expect("a pack");
+    let dense: Vec<Point> = all.into_iter().filter(|one| one.place.is_finite()).collect();
+    let file = trial.write(&dense, Fields::Keys, [dense.len(), 1]);
+    let conventions = CandidateConventions::default();
+    let refused = check_ray_pack(&pack, &file, Precision::F32, conventions, &Silent).expect_err("a refusal");
+    let message = refused.to_string();
+    let expected =
+        "expected one point for each ray in their order, NaN where there is none: this pack has no times";
+    assert!(message.contains(expected), "{message}");
+}
+
+/// Points that are printed in whole metres are off by up to half of one: a pass says so, and how many points agree by that alone.
+#[test]
+fn a_pass_says_in_which_steps_its_points_are_printed() {
+    let trial = Trial::new(&head(), &still());
+    let all = points(&trial.set, CloudFrame::Mesh);
+    let judged = |print: &dyn Fn(f64) -> String| {
+        let lines = all.iter().map(|one| one.place.to_array().map(print).join(" ") + "\n");
+        let text: String = lines.collect();
+        let count = all.len();
+        let header = format!(
+            "VERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nWIDTH 16\nHEIGHT {}\nPOINTS {count}\nDATA ascii\n",
+            count / 16
+        );
+        let file = trial.folder.path().join("text.pcd");
+        std::fs::write(&file, header + &text).expect("a file");
+        let checked = trial.check(&file, CandidateConventions::default()).expect("a check");
+        assert!(checked.passes(), "{:?}", checked.why);
+        checked.document().screen()
+    };
+    let metres = judged(&|part| format!("{part:.0}"));
+    assert!(metres.contains("1,920 rays agree to steps of 1 m: "), "{metres}");
+    assert!(
+        metres
+            .contains("Its numbers are printed in steps of 1 m and judged as such: errors below half a step"),
+        "{metres}"
+    );
+    assert!(
+        metres.contains(" points are further off than arithmetic alone explains, and agree by that."),
+        "{metres}"
+    );
+    let millimetres = judged(&|part| format!("{part:.3}"));
+    assert!(millimetres.contains("1,920 rays agree to steps of 0.001 m: "), "{millimetres}");
+    // All digits of a double: nothing is excused, and nothing said.
+    let full = judged(&|part| format!("{part:?}"));
+    assert!(full.contains("agree with the exact answers") && !full.contains("printed"), "{full}");
 }
 
 /// A cloud as robots send it, in big endian, with 5 bytes behind each row.

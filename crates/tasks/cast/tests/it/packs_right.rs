@@ -350,3 +350,33 @@ fn faces_of_a_type_that_does_not_tell_them_apart_are_refused() {
     assert_eq!(read("<f4", &4_294_967_296_f32.to_le_bytes()), Ok(None));
     assert_eq!(read("<f8", &4_000_000_001_f64.to_le_bytes()), Ok(Some(4_000_000_001)));
 }
+
+/// Numbers of fewer digits are rounded: a verdict calls none of them exact, and half precision says what it cannot see.
+#[test]
+fn a_verdict_calls_exact_only_what_is() {
+    let headline = |folders: &Folders| folders.check().document().headline;
+    let right = Folders::right();
+    assert!(headline(&right).contains(" exact, "), "{}", headline(&right));
+    let single = Folders::right().store(false, 0, &VALUES);
+    assert!(headline(&single).contains(" within rounding, "), "{}", headline(&single));
+    // A double that is off by one unit in its last place agrees, and is not exact.
+    let one = Folders::right().change("t", |_, t| t.next_up());
+    assert!(headline(&one).contains(" within rounding, "), "{}", headline(&one));
+    let half = Folders::right().without(&["point", "face"]).store(true, 0, &["t", "range"]);
+    let screen = half.check().document().screen();
+    assert!(screen.contains("200 rays agree to half precision: "), "{screen}");
+    assert!(
+        !screen.contains("exact, ") && screen.contains("judged as such: t, range. Errors below a 2048th"),
+        "{screen}"
+    );
+    assert_eq!(half.check().bundle("rays").coarseness.as_deref(), Some("half precision"));
+}
+
+/// The page of a check stands beside no arrays; that of a cast does.
+#[test]
+fn the_page_of_a_check_speaks_of_no_arrays() {
+    let checked = Folders::right().check();
+    let page = checked.document_with_pictures().page().unwrap();
+    assert!(page.contains("The numbers of this page are in single precision. Lengths are"));
+    assert!(!page.contains("the arrays beside it"));
+}

@@ -108,6 +108,7 @@ fn what_finds_no_room_is_named() {
         mesh: None,
         set: None,
         scan: None,
+        has_arrays: true,
         compared: None,
     };
     let (group, words) = page.group(&page.layout());
@@ -183,6 +184,7 @@ fn each_side_of_a_page_shows_its_own_numbers() {
             mesh: None,
             set: None,
             scan: None,
+            has_arrays: false,
             compared: Some(compared),
         };
         let (layout, mut found) = (page.layout(), std::collections::BTreeMap::new());

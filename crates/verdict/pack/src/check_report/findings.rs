@@ -182,6 +182,8 @@ pub struct BundleFindings {
     pub listed: Vec<WrongRay>,
     /// What explains why its rays are wrong, as one sentence without its full stop.
     pub why: Option<String>,
+    /// How coarsely its values are stored, in words, if it is more coarsely than in single precision, and it is no sensor.
+    pub coarseness: Option<String>,
 }
 
 impl BundleFindings {
@@ -198,6 +200,7 @@ impl BundleFindings {
             items: Vec::new(),
             listed: Vec::new(),
             why: None,
+            coarseness: None,
         }
     }
 
@@ -337,8 +340,10 @@ impl CheckFindings {
                 match &self.coarseness {
                     None => {
                         // A number is called exact only if it is.
-                        let is_exact =
-                            |item: &ItemFindings| item.worst_ulp.as_ref().is_none_or(|one| one.value == 0.0);
+                        let is_exact = |item: &ItemFindings| {
+                            let worst = item.worst_ulp.as_ref().or(item.worst_ratio.as_ref());
+                            worst.is_none_or(|one| one.value == 0.0)
+                        };
                         let words =
                             if self.totals.iter().all(is_exact) { "exact" } else { "within rounding" };
                         format!(

@@ -12,14 +12,19 @@ pub(crate) fn coarse_storages(recorded: &Recorded) -> Vec<String> {
                 "Stored in {how} and judged as such: {names}. Errors below half a step, {} m, cannot be seen",
                 0.5 * step.get()
             ),
-            _ => format!(
-                "Stored in half precision (11 binary digits, up to {}) and judged as such: {names}. Errors below a 2048th of a \
-                 number, 1 mm at 2 m, cannot be seen",
-                Storage::F16.max()
-            ),
+            _ => half_precision_note(&names),
         }
     };
     recorded.coarse_items().into_iter().map(remark).collect()
+}
+
+/// The remark for half precision, of these names.
+pub fn half_precision_note(names: &str) -> String {
+    format!(
+        "Stored in half precision (11 binary digits, up to {}) and judged as such: {names}. Errors below a 2048th of a \
+         number, 1 mm at 2 m, cannot be seen",
+        Storage::F16.max()
+    )
 }
 
 /// Why nothing of an item was compared: it was not given, or its type cannot hold it. `None` if it was compared, or if

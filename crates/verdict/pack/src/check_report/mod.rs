@@ -20,5 +20,5 @@ mod sharpness;
 
 pub use findings::{BundleFindings, CheckFindings, ItemFindings, PackForm, Said, WorstOf, WrongRay};
 pub use folder::write_document;
-pub use given::{items_not_given, not_given, rays_not_given};
+pub use given::{half_precision_note, items_not_given, not_given, rays_not_given};
 pub use sensors::check_suite;

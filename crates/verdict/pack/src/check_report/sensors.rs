@@ -1,5 +1,7 @@
 //! A check of sensors in the form of every check.
 
+use std::collections::BTreeSet;
+
 use raypencil_diagnosis::{Diagnosis, Reason};
 use raypencil_judge::{
     Answers, Check, Class, Item, ItemTally, Largest, Recorded, SensorResult, key_of, listed_defects, name_of,
@@ -86,6 +88,8 @@ fn findings(checked: &Checked) -> CheckFindings {
     let mut worst: Vec<DefectLine> =
         listed_defects(&check.sensors).into_iter().map(|one| wrong_ray(subject, one).line).collect();
     worst.extend(checked.ray_sets.iter().flat_map(|set| set.listed.iter().map(|wrong| wrong.line.clone())));
+    let coarse_sets = checked.ray_sets.iter().filter_map(|set| set.coarseness.clone());
+    let coarse: BTreeSet<String> = recorded.coarseness().into_iter().chain(coarse_sets).collect();
     CheckFindings {
         form: PackForm::Sensors,
         pack: subject.name.clone(),
@@ -98,7 +102,7 @@ fn findings(checked: &Checked) -> CheckFindings {
         arithmetic: Some(recorded.precision),
         totals: totals.chain(of_sets).collect(),
         worst,
-        coarseness: recorded.coarseness().map(|coarse| coarse.to_string()),
+        coarseness: (!coarse.is_empty()).then(|| coarse.into_iter().collect::<Vec<_>>().join(" and ")),
         headline: None,
         why: checked.why(),
         notes: notes(checked),
@@ -138,6 +142,7 @@ fn sensor_bundles(
             items: items.collect(),
             listed: sensor.listed.iter().map(|one| wrong_ray(subject, one)).collect(),
             why: None,
+            coarseness: None,
         }
     };
     check.sensors.iter().map(bundle).collect()

@@ -58,6 +58,7 @@ fn findings(checked: &InputChecked) -> CheckFindings {
         items: items.clone(),
         listed: listed.clone(),
         why: None,
+        coarseness: None,
     };
     let reflectivity = match checked.has_reflectivity {
         true => None,

@@ -408,3 +408,17 @@ fn a_pass_tells_only_what_the_candidate_could_have_shown() {
     let text = without(Quantity::Visible).document().screen();
     assert!(text.contains("of a cell off") && !text.contains("a shadow bias of"), "{text}");
 }
+
+/// Sets of rays are of the same candidate: the verdict calls none of it exact if one set has half precision.
+#[test]
+fn a_set_of_rays_in_half_precision_is_not_called_exact() {
+    let screen = |coarseness: Option<&str>| {
+        let mut checked = perfect();
+        let set = BundleFindings::not_given("rays/head".into(), 5);
+        checked.ray_sets = vec![BundleFindings { coarseness: coarseness.map(String::from), ..set }];
+        checked.document().screen()
+    };
+    assert!(screen(None).contains(" rays agree with the exact answers: "), "{}", screen(None));
+    let half = screen(Some("half precision"));
+    assert!(half.contains(" rays agree to half precision: ") && !half.contains(" exact, "), "{half}");
+}

@@ -281,11 +281,36 @@ pub(super) fn too_many(assigned: &Assigned, points: usize, places: usize) -> Opt
     Some(Fault::new("points", found, expected))
 }
 
-/// Why points cannot be laid on rays. `of_fields` is what their fields have, in words.
-pub(super) fn unclear(strays: usize, points: usize, of_fields: &str) -> Fault {
+/// What fields can do to lay points on rays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum OfFields {
+    /// The pack has no times of its rays, or not such that they tell rays apart.
+    NotOfPack,
+    /// The file does not have them.
+    NotOfFile,
+    /// Both have them, and they are not the same.
+    Others,
+}
+
+/// Why points cannot be laid on rays. `fields` is what fields can do, and `of_fields` what those of the file have, in words.
+pub(super) fn unclear(strays: usize, points: usize, (fields, of_fields): (OfFields, &str)) -> Fault {
+    let by_order = "one point for each ray in their order, NaN where there is none";
+    let expected = match fields {
+        OfFields::NotOfPack => {
+            format!(
+                "{by_order}: this pack has no times that tell its rays apart, so fields of the points cannot"
+            )
+        }
+        OfFields::NotOfFile => format!("the fields `ring` (or `channel`) and `time`, or {by_order}"),
+        OfFields::Others => {
+            format!(
+                "the fields `ring` (or `channel`) and `time` to be those of the pack's rays, or {by_order}"
+            )
+        }
+    };
     Fault::new(
         "points",
         format!("{strays} of {points} points belong to no ray that is known, or share one{of_fields}"),
-        "the fields `ring` (or `channel`) and `time`, or one point for each ray in their order, NaN where there is none",
+        expected,
     )
 }

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use glam::DVec3;
 use raypencil_files::FileError;
-use raypencil_mesh_io::{Cloud, CloudStorage};
-use raypencil_scene::CastRay;
+use raypencil_mesh_io::{Cloud, CloudColumn, CloudStorage};
+use raypencil_scene::{CastRay, Precision};
 
-use super::assign::{Asked, Assigned, BY_DIRECTION, Order, number_of_return, too_many, unclear};
+use super::assign::{Asked, Assigned, BY_DIRECTION, OfFields, Order, number_of_return, too_many, unclear};
 use super::beams::Beams;
 use super::each_key::EachKey;
 use super::file;
@@ -16,7 +16,7 @@ use super::keys::{BY_RING, Clock, Keys, is_key, usual_ring};
 use super::numbers::{NUMBER_RULES, wrong_numbers};
 use super::rules::{Places, assigned, backwards, by_direction, rings, swapped};
 use crate::cloud::CloudFrame;
-use crate::comparison::{Stated, StoredErrors};
+use crate::comparison::{CastValue, Stated, StoredErrors};
 use crate::pack::candidate::CandidateConventions;
 use crate::pack::scan::Scan;
 use crate::pack::trial::CloudPart;
@@ -38,9 +38,13 @@ pub struct CloudFacts {
     pub strays: Vec<usize>,
     /// Whether the field `range` was judged too.
     pub has_range: bool,
+    /// The steps in which coordinates and ranges are printed, in words, where these are coarser than single precision.
+    pub steps: Option<String>,
+    /// Number of the rays whose points agree by these steps alone.
+    pub(in crate::pack) excused: u64,
     /// Names of the fields that tell the ray of a point and were judged, or laid the points on their rays.
     pub keys: Vec<String>,
-    /// Names of such fields that were not judged: the pack knows nothing of them, or another field tells the same.
+    /// Names of such fields that were not judged: the pack knows nothing of them, or another field was judged in their place.
     pub unjudged: Vec<String>,
     /// Indices of the rays whose points have another ring, channel or time than theirs, as order or another time tells it.
     pub wrong_keys: Vec<usize>,
@@ -107,9 +111,19 @@ impl CloudCase<'_> {
     /// What the cloud states of the rays.
     pub(in crate::pack) fn stated(&self) -> Stated {
         let (range, of_storing) = self.ranges.clone().unzip();
-        let stored = StoredErrors { range: of_storing, ..StoredErrors::default() };
+        let coarse = self.facts.steps.iter().map(|steps| (CastValue::Point, steps.clone())).collect();
+        let stored = StoredErrors { range: of_storing, coarse, ..StoredErrors::default() };
         let mut stated = Stated { range, stored, ..Stated::default() };
         self.part.state(self.rays, &mut stated);
+        stated
+    }
+
+    /// The same, as if no number had been rounded when it was stored.
+    pub(in crate::pack) fn stated_as_if_exact(&self) -> Stated {
+        let range = self.ranges.as_ref().map(|(ranges, _)| ranges.clone());
+        let mut stated = Stated { range, ..Stated::default() };
+        let part = CloudPart { error: vec![0.0; self.part.error.len()], ..self.part.clone() };
+        part.state(self.rays, &mut stated);
         stated
     }
 }
@@ -168,7 +182,12 @@ pub(in crate::pack) fn read_cloud_of<'a>(
                 return fault(too_many);
             }
             let of_fields = only.map_or(String::new(), |time| format!("; all have the same time, {time}"));
-            fault(unclear(strays, real, &of_fields))
+            let fields = match (asked.fired(Clock::RIGHT), &of_keys) {
+                (None, _) => OfFields::NotOfPack,
+                (Some(_), None) => OfFields::NotOfFile,
+                (Some(_), Some(_)) => OfFields::Others,
+            };
+            fault(unclear(strays, real, (fields, &of_fields)))
         })?,
     };
     let part_of = |assigned: &Assigned| {
@@ -265,6 +284,8 @@ pub(in crate::pack) fn read_cloud_of<'a>(
         assigned: found.by,
         strays: found.strays,
         has_range: ranges.is_some(),
+        steps: printed_steps([x, y, z].into_iter().chain(cloud.column("range")), &is_point),
+        excused: 0,
         keys,
         unjudged,
     };
@@ -282,6 +303,24 @@ pub(in crate::pack) fn read_cloud_of<'a>(
         directed,
         ranges,
     })
+}
+
+/// The steps in which the numbers of columns are printed, in words; `None`: they are as fine as numbers of single precision.
+fn printed_steps<'a>(columns: impl Iterator<Item = &'a CloudColumn>, is_point: &[bool]) -> Option<String> {
+    let (mut finest, mut coarsest, mut largest) = (i32::MIN, i32::MAX, 0.0_f64);
+    for column in columns {
+        let CloudStorage::Decimal { decimals, .. } = &column.storage else { continue };
+        for point in (0..is_point.len()).filter(|&point| is_point[point] && column.values[point] != 0.0) {
+            finest = finest.max(decimals[point]);
+            coarsest = coarsest.min(decimals[point]);
+            largest = largest.max(column.values[point].abs());
+        }
+    }
+    let step: f64 = format!("1e{}", -coarsest).parse().unwrap_or(0.0);
+    // Neighbours of single precision stand at most this far apart.
+    let of_single = largest * 2.0 * Precision::F32.unit_roundoff;
+    let up_to = if finest == coarsest { "" } else { "up to " };
+    (largest > 0.0 && step > of_single).then(|| format!("steps of {up_to}{step} m"))
 }
 
 /// What the fields of a cloud say of its points.
