@@ -40,7 +40,7 @@ pub(super) fn cases() -> Vec<Case> {
         way(
             "grid",
             "a radial grid of 9 x 10^9 points",
-            "grid.sectors",
+            "drive.grid_sectors",
             "grid_sectors = 100000\ngrid_first_m = 0.7\ngrid_last_m = 900\ngrid_step_m = 0.01",
         ),
         way("unknown", "an unknown key", "scene.toml:4:", "evil = 1"),

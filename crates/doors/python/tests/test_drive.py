@@ -169,7 +169,7 @@ def test_progress_is_told() -> None:
     ("scene", "options", "words"),
     [
         (Scene("version = 1\n"), {}, "there is no drive"),
-        (Scene(SHORT), {"to": (500, 0)}, "drive.route"),
+        (Scene(SHORT), {"to": (500, 0)}, "the route"),
         (Scene(SHORT), {"to": [1, 2, 3]}, "expected waypoints of two numbers"),
         (Scene(SHORT), {"rules": {"gap": "real"}}, "rule gap=real"),
         (Scene(SHORT), {"record": ["films"], "output": "x"}, "record films: expected images"),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use raypencil_mesh_io::DemFacts;
 use raypencil_rover::{Detection, DrivePlan, Rig};
-use raypencil_scene::{Camera, FluxModel, Image, Mesh, SceneError};
+use raypencil_scene::{Camera, FluxModel, Image, Mesh};
 use raypencil_scene_io::{DriveSetup, LoadedScene, SceneSource, WaypointFrame};
 use raypencil_sensor::{FixedPattern, ImageSensor, Optics, Speckle, Sunlight};
 use raypencil_survey::Warning;
@@ -13,6 +13,7 @@ use raypencil_survey::Warning;
 use crate::background::Background;
 use crate::beam_columns::with_columns;
 use crate::error::{DriveError, MAX_FRAMES};
+use crate::keys::in_keys;
 use crate::warnings::{beams_out_of_order, blind_threshold, sectors_far_apart};
 
 /// The renderer that makes every approximation of the paper.
@@ -94,30 +95,6 @@ fn builtin_drive(rig: Rig) -> DriveSetup {
     drive
 }
 
-/// The error with the keys of `[drive]` in place of the plan's fields: `drive.grid_last_m` for `drive.grid.last`.
-fn in_keys(error: SceneError) -> SceneError {
-    let parts: Vec<&str> = error.field.split('.').collect();
-    let field = match parts.as_slice() {
-        [
-            "drive",
-            "vehicle",
-            name @ ("wheelbase" | "track" | "wheel_radius" | "wheel_width" | "clearance"),
-        ] => {
-            format!("drive.{name}_m")
-        }
-        ["drive", "grid", name @ ("first" | "step" | "last")] => format!("drive.grid_{name}_m"),
-        ["drive", "times", "row_time"] => "drive.row_time_us".into(),
-        ["drive", "times", "duration"] => "drive.electronics.exposure_ms".into(),
-        ["drive", "map", "points"] => "drive.map_points".into(),
-        ["drive", "truth", "centre_of_mass", _] => "drive.true_centre_of_mass_m".into(),
-        ["drive", "route", waypoint] if waypoint.starts_with("waypoints[") => {
-            waypoint.replace("waypoints", "drive.waypoints_m")
-        }
-        _ => return error,
-    };
-    SceneError { field, ..error }
-}
-
 fn speckle_note(speckle: &Speckle, camera: &Camera) -> String {
     format!(
         "speckle: contrast {} at a point and {:.3} on a pixel, grain {:.3} um",
@@ -163,7 +140,7 @@ impl DriveJob {
         }
         // A drive from a file was placed by the loader, but the scene may have changed since.
         drive.place(scene, &loaded.vehicle);
-        drive.validate_camera()?;
+        drive.validate_camera().map_err(in_keys)?;
         let mut plan = drive.plan;
         if plan.flux_model == FluxModel::Eq1 {
             if drive.has_camera {

@@ -10,7 +10,7 @@
 //! From floor to top:
 //!
 //! 1. `error`: [`DriveError`]; `labels`: words of labels;
-//! 2. `beam_columns`, `warnings`, `job`: [`DriveJob`], everything that defines a drive;
+//! 2. `keys`: names of a scene file in errors; `beam_columns`, `warnings`, `job`: [`DriveJob`], everything that defines a drive;
 //! 3. `shadow_map`, `sun`: light of sun and sky behind the stripes; `through_optics`: [`ThroughOptics`], a renderer
 //!    behind the camera's optics;
 //! 4. `recorded_exposure`, `differences`: [`Differences`] between two sides, stage by stage;
@@ -62,6 +62,7 @@ mod figures;
 mod folder;
 mod history;
 mod job;
+mod keys;
 mod labels;
 mod maps;
 mod point_errors;

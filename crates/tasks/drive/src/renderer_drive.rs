@@ -12,6 +12,7 @@ use raypencil_terrain::HeightIndex;
 use crate::background::Background;
 use crate::exact_map::ExactMap;
 use crate::job::DriveJob;
+use crate::keys::in_keys;
 use crate::recorded_exposure::{MAX_LIT_PIXELS, RecordedExposure};
 use crate::sun::Sun;
 use crate::swept_ground::SweptGround;
@@ -54,7 +55,7 @@ impl<'a> RendererDrive<'a> {
     /// Drive of a job at its start.
     ///
     /// # Errors
-    /// As [`Drive::new`].
+    /// As [`Drive::new`], with the keys of a scene file.
     pub(crate) fn new(
         job: &'a DriveJob,
         renderer: &'a dyn Renderer,
@@ -64,7 +65,7 @@ impl<'a> RendererDrive<'a> {
             job,
             renderer: ThroughOptics::new(renderer, job).in_sunlight(sun),
             drive: Drive::new(job.plan.clone(), Arc::clone(&job.mesh))
-                .map_err(|error| with_hint(error, &job.mesh))?,
+                .map_err(|error| in_keys(with_hint(error, &job.mesh)))?,
             exposures: 0,
             pattern: None,
             sunlit: Vec::new(),
@@ -174,7 +175,7 @@ impl<'a> RendererDrive<'a> {
             image
         };
         let start = Instant::now();
-        let frame = self.drive.step(renderer, &mut camera_pipeline)?;
+        let frame = self.drive.step(renderer, &mut camera_pipeline).map_err(in_keys)?;
         self.stepping += start.elapsed();
         if let (Some(frame), Some(exact), Some(mapper)) = (&frame, &mut self.exact, self.drive.mapper()) {
             exact.end_frame(mapper.map(), self.drive.ground(), frame.stance.position.truncate());

@@ -292,14 +292,23 @@ fn errors_of_several_keys_together_name_the_keys() {
             "wheelbase_m = 30\ngrid_last_m = 20",
             "drive.map_points is 201, which reach 10 m from the middle: expected ",
         ),
-        ("row_time_us = 5e5", "drive.row_time_us is 0.5 s, thus "),
+        ("row_time_us = 5e5", "drive.row_time_us is 500000 us, thus "),
+        (
+            "exposure_interval_ms = 0.0001",
+            "drive.exposure_interval_ms is 0.0001 ms: expected 0, or at least the duration",
+        ),
+        (
+            "grid_first_m = 0.7\ngrid_last_m = 900\ngrid_step_m = 0.01\ngrid_sectors = 100000",
+            "drive.grid_sectors is 100000",
+        ),
+        ("electronics = { bias_dn = 300, bits = 8 }", "drive.electronics.bias_dn is 300"),
         (
             "motion_blur_samples = 2\nelectronics = { exposure_ms = 334 }",
-            "drive.electronics.exposure_ms is 0.334 s: expected an exposure within the 0.333",
+            "drive.electronics.exposure_ms is 334 ms: expected an exposure within the 333.3",
         ),
         (
             "row_time_us = 100\nelectronics = { exposure_ms = 333 }",
-            "drive.electronics.exposure_ms is 0.333 s, and 0.0",
+            "drive.electronics.exposure_ms is 333 ms, and 12.7 ms for 128 rows",
         ),
         ("true_centre_of_mass_m = [0.7, 0, 1]", "drive.true_centre_of_mass_m is 0.7: expected -0.6 to 0.6 m"),
         (

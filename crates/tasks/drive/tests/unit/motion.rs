@@ -108,11 +108,14 @@ fn exposures_that_do_not_fit_in_a_frame_are_refused() {
     let route = "waypoints_m = [[0.6, 0]]\nframes_per_s = 4";
     // Two beams with an unlit image each: four exposures in a quarter of a second.
     let error = refused(&format!("{route}\nsubtract_unlit = true\nexposure_interval_ms = 70"));
-    assert!(error.contains("drive.times.interval is 0.07 s between 4 exposures"), "{error}");
+    assert!(error.contains("drive.exposure_interval_ms is 70 ms between 4 exposures"), "{error}");
     let kept = job(FLAT, &format!("{route}\nexposure_interval_ms = 70\nmotion_blur_samples = 2"));
     let times = kept.plan.times;
     assert_eq!((times.has_unlit, times.duration, times.samples), (false, 2e-3, 2));
     // An exposure of the ideal sensor takes 2 ms.
     let error = refused(&format!("{route}\nexposure_interval_ms = 1"));
-    assert!(error.contains("drive.times.interval") && error.contains("0.002 s"), "{error}");
+    assert!(
+        error.contains("drive.exposure_interval_ms is 1 ms") && error.contains("an exposure, 2 ms"),
+        "{error}"
+    );
 }

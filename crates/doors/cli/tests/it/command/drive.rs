@@ -141,7 +141,10 @@ fn errors_leave_no_folder_that_looks_complete() {
     }
     assert_trouble(
         &raypencil(path, &["drive", "small.toml", "--to", "60,0"]),
-        &["drive.route is off the ground after 23.70 m, at (23.10, 0.00) m", "ground under every wheel"],
+        &[
+            "the route (drive.waypoints_m, --to) is off the ground after 23.70 m, at (23.10, 0.00) m",
+            "ground under every wheel",
+        ],
     );
     assert_trouble(
         &raypencil(path, &["drive", "small.toml", "--rule", "gaps=paper"]),
