@@ -195,6 +195,31 @@ impl OutputFolder {
         self.journal.written()
     }
 
+    /// Removes the files of earlier runs before this one makes its own, where [`OutputFolder::finish`] would do it at the end. For a run
+    /// that works for long: if it is stopped, no results of another run lie beside what it left. The mark is to be removed before.
+    ///
+    /// # Errors
+    /// A file that cannot be removed.
+    ///
+    /// ```
+    /// use raypencil_files::{OutputFolder, write_atomically};
+    ///
+    /// let parent = tempfile::tempdir()?;
+    /// let folder = parent.path().join("out");
+    /// let output = OutputFolder::begin(&folder)?;
+    /// write_atomically(folder.join("map.exr"), |file| writeln!(file, "1"))?;
+    /// output.finish()?;
+    /// std::fs::write(folder.join("notes.txt"), "mine")?;
+    ///
+    /// let output = OutputFolder::begin(&folder)?;
+    /// output.clear_earlier()?;
+    /// assert!(!folder.join("map.exr").exists() && folder.join("notes.txt").exists());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn clear_earlier(&self) -> Result<(), FolderError> {
+        self.remove_earlier().map(drop)
+    }
+
     /// Removes the files of earlier runs that this one has not made again, and lists its own. A run that wrote nothing leaves
     /// no list.
     ///

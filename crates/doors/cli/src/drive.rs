@@ -107,8 +107,12 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
         Some(folder) => folder.clone(),
         None => Path::new("out").join(format!("{}-drive", job.name)),
     };
-    let output =
-        output_folder(&folder, "drive", &command.scene.scene, command.stripes.as_deref().as_slice())?;
+    let output = Arc::new(output_folder(
+        &folder,
+        "drive",
+        &command.scene.scene,
+        command.stripes.as_deref().as_slice(),
+    )?);
     let stripes = command
         .stripes
         .as_deref()
@@ -121,6 +125,7 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
     let extras = DriveExtras {
         extractor: stripes.map(|file| Arc::new(file) as _),
         record: Some((folder.clone(), contents)),
+        output: Some(Arc::clone(&output)),
     };
     drop(spinner);
 
@@ -128,7 +133,7 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
     let run = drive::drive_with(&job, &renderers, extras, &FrameBar::new()).map_err(trouble)?;
     let spinner = Spinner::new();
     write_drive(&job, &run, &folder, &spinner)?;
-    output.finish()?;
+    Arc::into_inner(output).expect("the drive has let go of it").finish()?;
     drop(spinner);
     let document = drive_document(&job, &run);
     say(&if json { document.json() } else { document.screen() });

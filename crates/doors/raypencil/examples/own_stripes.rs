@@ -78,7 +78,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let renderer = Scanline::default();
     let own: Arc<dyn StripeExtractor> = Arc::new(BrightestPeak { least: 400.0 });
     for (label, extractor) in [("thresholding", None), ("brightest peak", Some(own))] {
-        let extras = DriveExtras { extractor, record: None };
+        let extras = DriveExtras { extractor, ..DriveExtras::default() };
         let run = drive_with(&job, &[&renderer], extras, &Silent)?;
         let (errors, truth) = (&run.point_errors, &run.truth);
         println!(

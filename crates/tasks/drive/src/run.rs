@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use raypencil_chassis::GroundFaces;
-use raypencil_files::FolderError;
+use raypencil_files::{FolderError, OutputFolder};
 use raypencil_report::Drawing;
 use raypencil_rover::{
     Detection, DriveFrame, DrivePlan, ElevationMap, LabelledVector, ObstacleMap, StripeExtractor,
@@ -60,6 +60,10 @@ pub struct DriveExtras {
     /// Folder of the drive, and what is recorded there of the first renderer's drive. The recording begins when the drive
     /// has been accepted.
     pub record: Option<(PathBuf, RecordContents)>,
+    /// The run that has the folder. When the recording begins, it removes what earlier drives have made in the folder: nobody
+    /// takes their maps for those of a drive that goes on, or that was stopped. `None`: they stay, as with
+    /// [`OutputFolder::finish`] alone, until the end.
+    pub output: Option<Arc<OutputFolder>>,
 }
 
 /// Result of a drive.
@@ -172,7 +176,7 @@ pub fn drive_with(
     extras: DriveExtras,
     progress: &dyn DriveProgress,
 ) -> Result<DriveRun, DriveError> {
-    let DriveExtras { extractor, record } = extras;
+    let DriveExtras { extractor, record, output } = extras;
     assert!((1..=2).contains(&renderers.len()), "{} renderers", renderers.len());
     let planned = job.frames()?;
     let animation_step = planned.div_ceil(MAX_ANIMATION_FRAMES).max(1);
@@ -184,7 +188,8 @@ pub fn drive_with(
     };
     let mut first = start(0)?.expect("there is a renderer").keeping_swept();
     let mut second = start(1)?;
-    let begin = |(folder, contents): (PathBuf, _)| Recording::begin(&folder, job, contents);
+    let begin =
+        |(folder, contents): (PathBuf, _)| Recording::begin(&folder, job, contents, output.as_deref());
     let mut recording = record.map(begin).transpose()?;
     let stripes = u64::from(job.plan.sweep.steps);
     progress.frames(0, planned);

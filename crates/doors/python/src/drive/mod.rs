@@ -197,7 +197,7 @@ impl DriveCore {
             let contents = wish.contents()?;
             let named =
                 wish.stripes.as_ref().filter(|(_, is_named)| *is_named).map(|(folder, _)| folder.as_path());
-            let begun = wish.output.begin("drive", scene.of(), named.as_slice())?;
+            let begun = wish.output.begin("drive", scene.of(), named.as_slice())?.map(Arc::new);
             let (job, planned) = (Arc::new(job), Arc::default());
             let is_signed = job.subtract_unlit;
             let (listener, seen) = sync_channel(AHEAD);
@@ -211,6 +211,7 @@ impl DriveCore {
             let extras = DriveExtras {
                 extractor: Some(Arc::new(tee) as _),
                 record: wish.output.folder.clone().map(|folder| (folder, contents)),
+                output: begun.clone(),
             };
             let progress = Planned(Arc::clone(&planned));
             let of_replay = Arc::clone(&job);
@@ -229,7 +230,8 @@ impl DriveCore {
                     replayed
                         .map_err(|_| Failure::new("an error of raypencil itself: the second rover"))??;
                     let ended = finish(&job, &run, wish.output.folder.as_ref())?;
-                    end(begun)?;
+                    // The drive has let go of it.
+                    end(begun.and_then(Arc::into_inner))?;
                     Ok(ended)
                 })?;
             Ok(Self {

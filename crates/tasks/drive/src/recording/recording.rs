@@ -43,15 +43,24 @@ pub(crate) struct Recording {
 
 impl Recording {
     /// Begins a recording in the folder `recording` of a drive's folder, which loses its mark of completeness, as the recording
-    /// does. What an earlier recording has made there, and this one does not make again, is removed at the end.
+    /// does. What an earlier recording has made there is removed, and with the run `output` of the drive's folder what an earlier
+    /// drive has made in that, too.
     ///
     /// # Errors
     /// The folder or file that could not be made, and the reason.
-    pub(crate) fn begin(drive: &Path, job: &DriveJob, contents: RecordContents) -> Result<Self, FolderError> {
+    pub(crate) fn begin(
+        drive: &Path,
+        job: &DriveJob,
+        contents: RecordContents,
+        of_drive: Option<&OutputFolder>,
+    ) -> Result<Self, FolderError> {
         begin_output_folder(drive, "summary.json")?;
         let folder = drive.join(FOLDER);
         let output = OutputFolder::begin(&folder)?;
         begin_output_folder(&folder, LAST)?;
+        // A drive takes minutes. Stopped on the way, it would leave maps of another drive beside its own poses.
+        of_drive.map_or(Ok(()), OutputFolder::clear_earlier)?;
+        output.clear_earlier()?;
         if contents.png || contents.npy {
             create_folder(&folder.join("images"))?;
         }

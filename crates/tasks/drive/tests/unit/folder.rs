@@ -1,10 +1,16 @@
+use std::sync::Arc;
+
+use raypencil_files::OutputFolder;
 use raypencil_mesh_io::read_dem;
-use raypencil_scene::Silent;
+use raypencil_rover::{CameraImage, Exposure, StripeExtractor, Stripes};
+use raypencil_scanline::Scanline;
+use raypencil_scene::{SceneError, Silent};
 use raypencil_tests::schema::{assert_keys_are_closed, schema_faults};
 
 use super::*;
 use crate::common::{FLAT, LOW_SUN, SHORT, driven, filtered, job};
 use crate::document::drive_document;
+use crate::run::{DriveExtras, drive_with};
 
 /// Times vary from run to run; versions and pictures have their own tests.
 const FILTERS: [(&str, &str); 5] = [
@@ -74,4 +80,62 @@ fn the_summary_keeps_to_its_schema() {
         let summary = serde_json::from_str(&drive_document(&job, &driven(&job, names)).json()).unwrap();
         assert_eq!(schema_faults(&schema, &summary), Vec::<String>::new());
     }
+}
+
+/// An extraction that fails in the fourth frame.
+#[derive(Debug)]
+struct Stopped;
+
+impl StripeExtractor for Stopped {
+    fn stripes(&self, exposure: Exposure, _: &CameraImage) -> Result<Stripes, SceneError> {
+        match exposure.frame {
+            3 => Err(SceneError::new("stripes", "none", "some")),
+            _ => Ok(Stripes::default()),
+        }
+    }
+}
+
+#[test]
+fn a_drive_that_is_stopped_leaves_nothing_of_an_earlier_one_beside_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let driven =
+        |job: &DriveJob, extractor: Option<Arc<dyn StripeExtractor>>| -> Result<(), crate::DriveError> {
+            let output = Arc::new(OutputFolder::begin(folder.path())?);
+            let record = Some((folder.path().to_path_buf(), Default::default()));
+            let extras = DriveExtras { extractor, record, output: Some(Arc::clone(&output)) };
+            let run = drive_with(job, &[&Scanline::default()], extras, &Silent)?;
+            write_drive(job, &run, folder.path(), &Silent)?;
+            Ok(Arc::into_inner(output).expect("let go of").finish()?)
+        };
+    let names = |within: &str| -> Vec<String> {
+        let entries = std::fs::read_dir(folder.path().join(within)).unwrap();
+        let names = entries.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned());
+        let mut names: Vec<String> = names.filter(|name| !name.starts_with(".raypencil-")).collect();
+        names.sort();
+        names
+    };
+    let long = job(FLAT, SHORT);
+    driven(&long, None).unwrap();
+    std::fs::write(folder.path().join("notes.txt"), "mine").unwrap();
+    let whole = [names(""), names("recording")];
+    assert!(whole[0].len() > 20 && whole[1].len() > 4, "{whole:?}");
+
+    // One that is refused changes nothing.
+    let off = job(FLAT, "waypoints_m = [[99, 0]]\nscans = false");
+    assert!(
+        driven(&off, None).unwrap_err().to_string().starts_with("the route (drive.waypoints_m, --to) is off")
+    );
+    assert_eq!([names(""), names("recording")], whole);
+
+    // One that is stopped on its way leaves neither maps nor poses of the drive before.
+    let error = driven(&long, Some(Arc::new(Stopped))).unwrap_err().to_string();
+    assert!(error.starts_with("stripes is none"), "{error}");
+    assert_eq!(names(""), ["notes.txt", "recording"]);
+    let left = names("recording");
+    assert!(
+        !left.contains(&"sectors.csv".to_string()) && !left.contains(&"setup.json".to_string()),
+        "{left:?}"
+    );
+    driven(&long, None).unwrap();
+    assert_eq!([names(""), names("recording")], whole);
 }

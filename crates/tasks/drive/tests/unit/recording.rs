@@ -24,7 +24,8 @@ fn recorded(
     extractor: Option<Arc<dyn StripeExtractor>>,
 ) -> DriveRun {
     let record = Some((folder.to_path_buf(), contents));
-    drive_with(job, &[&Scanline::default()], DriveExtras { extractor, record }, &Silent).unwrap()
+    drive_with(job, &[&Scanline::default()], DriveExtras { extractor, record, output: None }, &Silent)
+        .unwrap()
 }
 
 fn all() -> RecordContents {
@@ -155,8 +156,8 @@ fn a_new_recording_removes_what_the_last_one_left_and_nothing_else() {
     let like_ours = recording.join("images/000007-notes.png");
     std::fs::write(&like_ours, "mine").unwrap();
     // Begun and given up: no file says that it is complete.
-    drop(Recording::begin(folder.path(), &job, RecordContents::default()).unwrap());
-    assert!(!recording.join("setup.json").exists() && recording.join("stripes.npy").exists());
+    drop(Recording::begin(folder.path(), &job, RecordContents::default(), None).unwrap());
+    assert!(!recording.join("setup.json").exists() && !recording.join("stripes.npy").exists());
     recorded(&job, folder.path(), RecordContents::default(), None);
     assert!(recording.join("setup.json").exists() && !recording.join("points.npy").exists());
     let mut left: Vec<_> =
