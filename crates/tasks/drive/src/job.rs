@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use raypencil_mesh_io::DemFacts;
 use raypencil_rover::{Detection, DrivePlan, Rig};
-use raypencil_scene::{Camera, FluxModel, Image, Mesh};
+use raypencil_scene::{Camera, FluxModel, Image, Mesh, Pose};
 use raypencil_scene_io::{DriveSetup, LoadedScene, SceneSource, WaypointFrame};
 use raypencil_sensor::{FixedPattern, ImageSensor, Optics, Speckle, Sunlight};
 use raypencil_survey::Warning;
@@ -14,7 +14,8 @@ use crate::background::Background;
 use crate::beam_columns::with_columns;
 use crate::error::{DriveError, MAX_FRAMES};
 use crate::keys::in_keys;
-use crate::warnings::{beams_out_of_order, blind_threshold, sectors_far_apart};
+use crate::start::height_off_ground;
+use crate::warnings::{beams_out_of_order, blind_threshold, map_coarser_than_wheel, sectors_far_apart};
 
 /// The renderer that makes every approximation of the paper.
 const PAPERS_RENDERER: &str = "scanline-paper";
@@ -53,6 +54,11 @@ pub struct DriveJob {
     pub mesh: Arc<Mesh>,
     /// Plan of the rover: route, rig, rules and errors.
     pub plan: DrivePlan,
+    /// Pose of the scene's `[vehicle]`, global; `None`: the scene has no vehicle. A drive takes place and heading of it, and warns
+    /// if the vehicle leans otherwise.
+    pub vehicle_of_scene: Option<Pose>,
+    /// Height at which the scene puts the vehicle, global, metres; `None`: on the ground. Refused if it does not stand there.
+    pub height_off_ground: Option<f64>,
     /// Name of the preset of the image sensor.
     pub preset: &'static str,
     /// Optics, step 6 of section 3.
@@ -119,7 +125,10 @@ impl DriveJob {
             // A built-in ground has a route of its own; settings say how it is driven.
             (drive, SceneSource::Builtin(name)) => {
                 let start = builtin_start(name).ok_or(DriveError::NoDrive)?;
-                let start = Some(at.map_or(start, DVec2::from_array));
+                // A place that the settings give takes the place of the route's own start. Without one it is the origin, the
+                // route's end.
+                let placed = Some(loaded.vehicle.position.truncate()).filter(|&place| place != DVec2::ZERO);
+                let start = Some(at.map(DVec2::from_array).or(placed).unwrap_or(start));
                 match drive {
                     None => {
                         notes.push("built-in drive: no vertical scans".to_string());
@@ -159,18 +168,17 @@ impl DriveJob {
         notes.extend(drive.optics.speckle.map(|speckle| speckle_note(&speckle, &plan.rig.camera.sensor)));
         plan.validate("drive").map_err(in_keys)?;
         warnings.extend(sectors_far_apart(&plan));
-        // A scene's vehicle may lean, for its own maps; that of a drive stands on its wheels.
-        if loaded.has_vehicle && loaded.vehicle.rotate(DVec3::Z).z < 1.0 - 1e-12 {
-            notes.push(
-                "the vehicle's pitch and roll are those of the ground, not those of [vehicle]".to_string(),
-            );
-        }
+        warnings.extend(map_coarser_than_wheel(&plan));
         Ok(Self {
             name: loaded.name.clone(),
             arguments,
             sha256: loaded.source_sha256.clone(),
             mesh: Arc::clone(scene.mesh()),
             plan,
+            vehicle_of_scene: loaded.standing_vehicle(),
+            height_off_ground: loaded
+                .standing_vehicle()
+                .and_then(|vehicle| height_off_ground(&vehicle, scene.mesh())),
             preset: drive.preset,
             optics: drive.optics,
             sensor: drive.sensor,

@@ -11,6 +11,7 @@
 //!
 //! 1. `error`: [`DriveError`]; `labels`: words of labels;
 //! 2. `keys`: names of a scene file in errors; `beam_columns`, `warnings`, `job`: [`DriveJob`], everything that defines a drive;
+//!    `start`: the pose of `[vehicle]` against how the vehicle stands;
 //! 3. `shadow_map`, `sun`: light of sun and sky behind the stripes; `through_optics`: [`ThroughOptics`], a renderer
 //!    behind the camera's optics;
 //! 4. `recorded_exposure`, `differences`: [`Differences`] between two sides, stage by stage;
@@ -72,6 +73,7 @@ mod renderer_drive;
 mod run;
 mod sector_truth;
 mod shadow_map;
+mod start;
 mod stripe_file;
 mod summary;
 mod sun;

@@ -14,6 +14,7 @@ use crate::exact_map::ExactMap;
 use crate::job::DriveJob;
 use crate::keys::in_keys;
 use crate::recorded_exposure::{MAX_LIT_PIXELS, RecordedExposure};
+use crate::start::check_height;
 use crate::sun::Sun;
 use crate::swept_ground::SweptGround;
 use crate::through_optics::ThroughOptics;
@@ -55,17 +56,21 @@ impl<'a> RendererDrive<'a> {
     /// Drive of a job at its start.
     ///
     /// # Errors
-    /// As [`Drive::new`], with the keys of a scene file.
+    /// As [`Drive::new`], with the keys of a scene file; names `vehicle.position_m` for a height at which the vehicle does not stand.
     pub(crate) fn new(
         job: &'a DriveJob,
         renderer: &'a dyn Renderer,
         sun: Option<&'a Sun>,
     ) -> Result<Self, SceneError> {
+        let drive = Drive::new(job.plan.clone(), Arc::clone(&job.mesh))
+            .map_err(|error| in_keys(with_hint(error, &job.mesh)))?;
+        if let Some(given) = job.height_off_ground {
+            check_height(given, &drive)?;
+        }
         Ok(Self {
             job,
             renderer: ThroughOptics::new(renderer, job).in_sunlight(sun),
-            drive: Drive::new(job.plan.clone(), Arc::clone(&job.mesh))
-                .map_err(|error| in_keys(with_hint(error, &job.mesh)))?,
+            drive,
             exposures: 0,
             pattern: None,
             sunlit: Vec::new(),

@@ -24,6 +24,7 @@ use crate::point_errors::PointErrors;
 use crate::recording::{RecordContents, Recording};
 use crate::renderer_drive::{ExposedFrame, RendererDrive};
 use crate::sector_truth::{SectorTruth, TrueGround, first_obstacles};
+use crate::start::leans_otherwise;
 use crate::sun::Sun;
 use crate::warnings::{at_the_start, nothing_measured, start_too_steep, stripes_left_over, way_too_steep};
 
@@ -127,8 +128,8 @@ impl DriveRun {
 /// Drives a job with one renderer, or with two in lockstep: on the same plan and with the same seeds.
 ///
 /// # Errors
-/// [`DriveError::Frames`] for a route that is too long; [`DriveError::Plan`] for a start off the ground and for scenes
-/// that `scene` refuses.
+/// [`DriveError::Frames`] for a route that is too long; [`DriveError::Plan`] for a start off the ground, or at another height
+/// than the scene says, and for scenes that `scene` refuses.
 ///
 /// # Panics
 /// If there are no renderers, or more than two.
@@ -295,6 +296,7 @@ pub fn drive_with(
     let (air, model) = (job.plan.atmosphere, job.plan.flux_model);
     let scene = job.plan.rig.scene(Arc::clone(&job.mesh), at_start, air, model)?;
     let mut warnings = at_the_start(&scene);
+    warnings.extend(job.vehicle_of_scene.and_then(|given| leans_otherwise(&given, &at_start)));
     warnings.extend(start_too_steep(&job.plan, &at_start));
     let stances: Vec<Pose> = frames.iter().map(|frame| frame.stance.pose()).collect();
     warnings.extend(way_too_steep(&job.plan, &stances));

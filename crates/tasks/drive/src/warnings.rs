@@ -45,6 +45,34 @@ pub(crate) fn sectors_far_apart(plan: &DrivePlan) -> Option<Warning> {
     Some(Warning::of_scene(WarningCode::SectorsFarApart, sentence))
 }
 
+/// Largest distance of a square grid's points, metres, at which a rectangle of these sides has one of them on it or in it, wherever it
+/// lies and however it is turned: at which a wheel, seen from above, cannot stand between them.
+///
+/// Let the shorter side be a and the longer b. Between two rows of points, s apart, is no point: so s is at most a. With s <= a, go
+/// along the rectangle, which is turned against the rows by t up to 45 degrees, from a point of the grid on it to the next. A step
+/// from row to row leads s cos t across it and s sin t along; one in the row, s sin t back across and s cos t along. The first, the
+/// second, or both together stay on it, and lead along by s (sin t + cos t) at most, up to sqrt(2) s at 45 degrees: so s is at
+/// most b / sqrt(2).
+fn largest_spacing([a, b]: [f64; 2]) -> f64 {
+    a.min(b).min(a.max(b) / std::f64::consts::SQRT_2)
+}
+
+/// Warns if the points of the map are so far apart that a wheel may stand between them: then what stands beside a point, and was
+/// measured, is missed.
+pub(crate) fn map_coarser_than_wheel(plan: &DrivePlan) -> Option<Warning> {
+    let (spacing, wheel) = (plan.map.spacing, [plan.vehicle.wheel_width, 2.0 * plan.vehicle.wheel_radius]);
+    let most = largest_spacing(wheel);
+    (spacing > most).then(|| {
+        let [wide, long] = wheel;
+        let sentence = format!(
+            "the points of the map are {spacing} m apart, and a wheel is {wide:.2} m wide and {long:.2} m long: it may roll between \
+             them, over what was measured. Give map_spacing_m {} or less.",
+            (most * 1e3).floor() / 1e3
+        );
+        Warning::of_scene(WarningCode::MapCoarserThanWheel, sentence)
+    })
+}
+
 /// Warns that the default threshold does not account for `ignored`: light or electronics that the file changes.
 ///
 /// With an unlit image subtracted, the sun's light is gone but its noise is not: the warning is given there, too.
@@ -176,6 +204,53 @@ mod tests {
         assert_eq!(said(31, half, 0.7), None);
         let steps = said(31, half, 0.75).unwrap();
         assert!(steps.contains("radii of a sector are 0.75 m apart, and a wheel is 0.70 m long"), "{steps}");
+    }
+
+    #[test]
+    fn a_map_with_points_farther_apart_than_a_wheel_is_told() {
+        let plan = job(FLAT, SHORT).plan;
+        let said = |spacing, wheel_width, wheel_radius| {
+            let vehicle = raypencil_rover::Vehicle { wheel_width, wheel_radius, ..plan.vehicle };
+            let map = raypencil_rover::MapSize { spacing, ..plan.map };
+            let plan = DrivePlan { vehicle, map, ..plan.clone() };
+            map_coarser_than_wheel(&plan).map(|warning| warning.to_string())
+        };
+        assert_eq!((said(0.1, 0.25, 0.35), said(0.25, 0.25, 0.35)), (None, None));
+        let coarse = said(1.25, 0.25, 0.35).unwrap();
+        assert!(coarse.contains("1.25 m apart, and a wheel is 0.25 m wide and 0.70 m long"), "{coarse}");
+        assert!(coarse.contains("map_spacing_m 0.25 or less"), "{coarse}");
+        // A wheel as wide as it is long: 0.4 m / sqrt 2 = 0.2828 m.
+        assert_eq!(said(0.282, 0.4, 0.2), None);
+        assert!(said(0.283, 0.4, 0.2).unwrap().contains("map_spacing_m 0.282 or less"));
+    }
+
+    #[test]
+    fn a_rectangle_has_a_point_of_a_grid_up_to_the_largest_spacing_alone() {
+        // The farthest that a place in a rectangle of these sides, turned by `turn`, can be moved without a point of the grid of
+        // spacing 1 on it, by trial of its places: whether each of them has a point.
+        let always_has_one = |[a, b]: [f64; 2], turn: f64| {
+            let (sin, cos) = (libm::sin(turn), libm::cos(turn));
+            let has_one = |x: f64, y: f64| {
+                (-4..=4).flat_map(|i| (-4..=4).map(move |j| (f64::from(i) - x, f64::from(j) - y))).any(
+                    |(i, j)| {
+                        (cos * i + sin * j).abs() <= 0.5 * a + 1e-9
+                            && (cos * j - sin * i).abs() <= 0.5 * b + 1e-9
+                    },
+                )
+            };
+            (0..40)
+                .all(|i| (0..40).all(|j| has_one(f64::from(i) / 40.0 + 0.0125, f64::from(j) / 40.0 + 0.0125)))
+        };
+        let turns: Vec<f64> = (0..=45).map(|degrees| f64::from(degrees).to_radians()).collect();
+        for sides in [[1.0, 1.415], [1.0, 3.0], [1.2, 1.415], [1.415, 1.415]] {
+            assert!(largest_spacing(sides) >= 1.0);
+            assert!(turns.iter().all(|&turn| always_has_one(sides, turn)), "{sides:?}");
+        }
+        // Narrower than a row, or too short at 45 degrees.
+        for sides in [[0.94, 3.0], [1.0, 1.33], [1.2, 1.33]] {
+            assert!(largest_spacing(sides) < 1.0);
+            assert!(!turns.iter().all(|&turn| always_has_one(sides, turn)), "{sides:?}");
+        }
     }
 
     #[test]

@@ -201,6 +201,12 @@ impl Drive {
         self.mapper.as_deref()
     }
 
+    /// How the vehicle stands at the start of the route.
+    pub fn start_stance(&self) -> Option<Stance> {
+        let Route { start, heading, .. } = self.plan.route;
+        self.true_vehicle.stance(start, heading)
+    }
+
     /// Heights of the true ground.
     pub fn ground(&self) -> &Arc<HeightIndex> {
         &self.true_vehicle.heights

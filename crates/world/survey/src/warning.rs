@@ -41,6 +41,10 @@ pub enum WarningCode {
     BeamsOutOfOrder,
     /// Sectors or radii of a drive's obstacle maps are so far apart that ground between them is not tested.
     SectorsFarApart,
+    /// The points of a drive's map are so far apart that a wheel may stand between them.
+    MapCoarserThanWheel,
+    /// A scene's vehicle leans otherwise than that of its drive, which stands on its wheels.
+    VehicleLeansOtherwise,
     /// A drive has measured no point of the ground.
     NothingMeasured,
     /// Edges of stripes were given for images that the drive did not take.
@@ -63,7 +67,7 @@ pub enum WarningCode {
 
 impl WarningCode {
     /// All codes.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 24] = [
         Self::NoHits,
         Self::FewHits,
         Self::BacksFirst,
@@ -77,6 +81,8 @@ impl WarningCode {
         Self::BlindThreshold,
         Self::BeamsOutOfOrder,
         Self::SectorsFarApart,
+        Self::MapCoarserThanWheel,
+        Self::VehicleLeansOtherwise,
         Self::NothingMeasured,
         Self::StripesLeftOver,
         Self::StartTooSteep,
@@ -104,6 +110,8 @@ impl WarningCode {
             Self::BlindThreshold => "blind_threshold",
             Self::BeamsOutOfOrder => "beams_out_of_order",
             Self::SectorsFarApart => "sectors_far_apart",
+            Self::MapCoarserThanWheel => "map_coarser_than_wheel",
+            Self::VehicleLeansOtherwise => "vehicle_leans_otherwise",
             Self::NothingMeasured => "nothing_measured",
             Self::StripesLeftOver => "stripes_left_over",
             Self::StartTooSteep => "start_too_steep",

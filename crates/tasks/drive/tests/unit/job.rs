@@ -336,13 +336,64 @@ fn an_exposure_as_long_as_a_frame_is_taken() {
 #[test]
 fn a_vehicle_that_leans_in_its_file_stands_on_its_wheels_and_is_told_so() {
     let said = |vehicle: &str| {
-        let notes = DriveJob::new(&small("", vehicle), None, "small.toml".into()).expect("a drive").notes;
-        notes.iter().any(|note| note.contains("pitch and roll are those of the ground"))
+        let job = DriveJob::new(&small("", vehicle), None, "small.toml".into()).expect("a drive");
+        let warnings = driven(&job, &["scanline"]).warnings;
+        let told = warnings.into_iter().find(|warning| warning.code.word() == "vehicle_leans_otherwise");
+        told.map(|warning| warning.sentence)
     };
-    assert_eq!(
-        ["heading_deg = 40", "pitch_down_deg = 3", "roll_right_deg = -3"].map(said),
-        [false, true, true]
+    assert_eq!(said("heading_deg = 40"), None);
+    let nose = said("heading_deg = 40\npitch_down_deg = 3").unwrap();
+    assert!(nose.contains("leans, nose 3.0° down and left side 0.0° up, and"), "{nose}");
+    assert!(nose.contains("stands on its wheels: nose 0.0° down and left side 0.0° up"), "{nose}");
+    assert!(said("roll_right_deg = -3").unwrap().contains("left side -3.0° up"));
+    // Less than a tenth of a degree.
+    assert_eq!(said("pitch_down_deg = 0.09"), None);
+}
+
+#[test]
+fn a_height_at_which_the_vehicle_does_not_stand_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    // Level ground, and a hall's roof 3 m over it, 12 m long.
+    let plate = |x: [f64; 2], z: f64| {
+        let [low, high] = x;
+        format!("v {low} -9 {z}\nv {high} -9 {z}\nv {high} 9 {z}\nv {low} 9 {z}\n")
+    };
+    let faces = "f 1 2 3 4\nf 5 6 7 8\n";
+    let hall = plate([-30.0, 30.0], 0.0) + &plate([-6.0, 6.0], 3.0) + faces;
+    std::fs::write(folder.path().join("hall.obj"), hall).unwrap();
+    let driven = |position: &str| {
+        let file = folder.path().join("hall.obj");
+        let ground = format!("[terrain]\nfile = '{}'\n[vehicle]\nposition_m = {position}", file.display());
+        let loaded = load_text(&scene_text("", 2, &ground, SHORT), "hall").expect("a scene");
+        let job = DriveJob::new(&loaded, None, "hall.toml".into()).expect("a job");
+        let run = crate::drive(&job, &[&raypencil_scanline::Scanline::default()], &raypencil_scene::Silent);
+        run.map(|run| run.frames[0].stance.position.z).map_err(|error| error.to_string())
+    };
+    for (position, height) in
+        [("[0, 0]", 3.0), ("[0, 0, 3]", 3.0), ("[0, 0, 3.0005]", 3.0), ("[-20, 0, 0]", 0.0)]
+    {
+        assert_eq!(driven(position), Ok(height), "{position}");
+    }
+    let below = driven("[0, 0, 0]").unwrap_err();
+    assert!(
+        below.starts_with("vehicle.position_m is 0 m high: expected no z, or 3.000 m: at (0, 0)"),
+        "{below}"
     );
+    assert!(below.ends_with("leave the roof out of the mesh"), "{below}");
+    let above = driven("[-20, 0, 5]").unwrap_err();
+    assert!(above.contains("5 m high: expected no z, or 0.000 m") && !above.contains("roof"), "{above}");
+}
+
+#[test]
+fn a_place_that_is_set_takes_the_place_of_a_built_in_start() {
+    let start = |setting: &str, at: Option<[f64; 2]>| {
+        let settings = vec![Setting::parse(setting).unwrap()];
+        let loaded = load("pyramids", &Overrides { settings, ..Overrides::default() }).unwrap();
+        DriveJob::new(&loaded, at, String::new()).unwrap().plan.route.start
+    };
+    assert_eq!(start("vehicle.position_m=[-3, 1]", None), DVec2::new(-3.0, 1.0));
+    assert_eq!(start("camera.pitch_down_deg=25", None), DVec2::new(-7.5, 0.0));
+    assert_eq!(start("camera.pitch_down_deg=25", Some([-2.0, 0.5])), DVec2::new(-2.0, 0.5));
 }
 
 #[test]
