@@ -400,6 +400,10 @@ mod tests {
                 message("width: 640\n", "width: 640\nimage_width: 320\n"),
                 "no calibration of a camera in YAML: expected once, but found again: `image_width`",
             ),
+            (
+                message("width: 640\n", "width: 640\nwidth: 320\n"),
+                "no calibration of a camera in YAML: expected once, but found again: width",
+            ),
             (message("width: 640\n", ""), "no calibration of a camera in YAML: there is no `image_width`"),
             (message("- 1.0\nr:", "- 2.0\nr:"), "a camera without skew"),
             (read("", false).unwrap_err(), "the file is empty"),

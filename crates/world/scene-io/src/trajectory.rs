@@ -173,8 +173,9 @@ fn other_order(comment: &str) -> Option<String> {
     let [x, y, z, w] = ["x", "y", "z", "w"].map(place);
     let (Some(x), Some(y), Some(z), Some(w)) = (x, y, z, w) else { return None };
     let is_in_order = x < y && y < z && z < w;
-    let has_other_unit =
-        words.iter().any(|word| ["ns", "ms", "us", "nanoseconds", "milliseconds"].contains(&word.as_str()));
+    let has_other_unit = words.iter().any(|word| {
+        ["ns", "ms", "us", "nanoseconds", "milliseconds", "microseconds"].contains(&word.as_str())
+    });
     (!is_in_order || has_other_unit).then(|| comment.trim().to_string())
 }
 
@@ -290,6 +291,7 @@ mod tests {
             "# timestamp [ns] x y z qx qy qz qw",
             "# columns: timestamp tx ty tz qw qx qy qz",
             "# time in nanoseconds, position, and the quaternion as q_x q_y q_z q_w",
+            "# time in microseconds, position, and the quaternion as q_x q_y q_z q_w",
             "time_s,x_mm,y_mm,z_mm,qx,qy,qz,qw",
             "time,qx,qy,qz,qw,x,y,z",
         ] {

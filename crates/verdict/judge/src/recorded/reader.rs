@@ -487,21 +487,17 @@ fn negative_lengths(reals: Reals<'_>, lengths: &Image<Maybe<f64>>, first: f64) -
     }
 }
 
-/// A line of help for a number that may mean "no hit".
+/// A line of help for a finite number that may mean "no hit": any other means that by itself.
 fn declare_miss(value: f64, storage: Storage) -> String {
     // As people write it, and as the file has it.
     let value = match storage {
         Storage::Steps(step) => libm::round(value / step.get()),
         _ => value,
     };
-    let word = if value.is_nan() { "nan".to_string() } else { value.to_string() };
-    // Not every command that reads recordings has the option; and JSON has no infinite number.
-    let in_note = match value {
-        value if value.is_nan() => ", or \"miss\": \"nan\" in its candidate.json".to_string(),
-        value if value.is_finite() => format!(", or \"miss\": {word} in its candidate.json"),
-        _ => String::new(),
-    };
-    format!("if {word} means \"no hit\" in this recording, declare --miss {word} to check{in_note}")
+    // Not every command that reads recordings has the option.
+    format!(
+        "if {value} means \"no hit\" in this recording, declare --miss {value} to check, or \"miss\": {value} in its candidate.json"
+    )
 }
 
 /// The same, with numbers of any sign: a point may lie behind the camera.

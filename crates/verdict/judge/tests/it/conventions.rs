@@ -128,7 +128,8 @@ fn faces_can_be_left_out() {
     // Face 7 does not exist, and every ray is said to hit.
     let own = Image::filled(9, 8, 7_u32);
     let folder = folder(&ranges(f64::INFINITY), Some(&own));
-    assert!(help(folder.path()).contains("declare --no-faces"));
+    let declare = "declare --no-faces to check, or \"no_faces\": true in its candidate.json";
+    assert!(help(folder.path()).contains(declare), "{}", help(folder.path()));
     let recorded = read(folder.path(), Conventions { ignores_faces: true, ..Conventions::STANDARD }).unwrap();
     assert!(recorded.unknown.is_empty() && passes(&recorded));
     let scene = wall();
