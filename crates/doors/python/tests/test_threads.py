@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import raypencil
+from raypencil._arrays import RayParts
 
 #: Rays that take the exact answers some seconds, margins above all.
 LONG = """
@@ -134,3 +135,10 @@ def test_progress_by_tqdm_is_written_where_errors_are(cube: raypencil.Mesh, capf
     assert out == "" and "tree of 12 faces" in error
     raypencil.cast(cube, [0, 0, 3], [0, 0, -1])
     assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("shape", [(200_001,), (3, 70_000), (2, 150_000), (0,), ()])
+def test_rays_that_are_copied_in_blocks_are_all_there(shape: tuple[int, ...]) -> None:
+    given = np.random.default_rng(1).uniform(size=(*shape, 9))
+    whole = RayParts(given, None).whole()
+    assert np.array_equal(whole, given.reshape(-1, 9))

@@ -47,8 +47,8 @@ struct OldGround {
 }
 
 /// Error of the vehicle's elevation relative to the map, with its variance, from points of a frame (global, metres) that
-/// were placed by that elevation, whose variance is `believed`, square metres. `None` if too few lie on ground that was measured
-/// long enough ago.
+/// were placed by that elevation. `own_variance` is the variance of that elevation, square metres. `None` if too few points lie
+/// on ground that was measured long enough ago.
 ///
 /// An error that the belief does not expect is taken only from ground that is one surface. A stripe that climbs a thing lies
 /// lower or higher than what was measured of it before, by up to its height, and no error of the vehicle is needed for that.
@@ -59,22 +59,23 @@ pub(crate) fn elevation_error(
     map: &ElevationMap,
     points: &[DVec3],
     row_error: f64,
-    believed: f64,
+    own_variance: f64,
 ) -> Option<Estimate> {
     let met = points.iter().filter_map(|&point| Some((point.z, old_ground(map, point)?)));
     let heights: Vec<(f64, bool)> = met.map(|(z, old)| (z - old.elevation, old.is_surface)).collect();
     let shared = row_error.max(MIN_SHARED_ERROR_M);
-    let error = median(heights.iter().map(|&(height, _)| height), shared)?;
-    let expected = EXPECTED_DEVIATIONS * (believed + error.variance).sqrt()
+    let error = median_estimate(heights.iter().map(|&(height, _)| height), shared)?;
+    let expected = EXPECTED_DEVIATIONS * (own_variance + error.variance).sqrt()
         + LARGEST_STEP_OF_A_SURFACE * map.size().spacing;
     if error.elevation.abs() <= expected {
         return Some(error);
     }
-    median(heights.iter().filter(|(_, is_surface)| *is_surface).map(|&(height, _)| height), shared)
+    median_estimate(heights.iter().filter(|(_, is_surface)| *is_surface).map(|&(height, _)| height), shared)
 }
 
-/// The median of heights, with its variance. `shared` is a standard error that all of them have, metres. `None` of too few.
-fn median(heights: impl Iterator<Item = f64>, shared: f64) -> Option<Estimate> {
+/// The median of heights, with its variance. `shared` is a standard error that all of them have in common, metres. `None` if there are
+/// too few.
+fn median_estimate(heights: impl Iterator<Item = f64>, shared: f64) -> Option<Estimate> {
     let mut heights: Vec<f64> = heights.collect();
     if heights.len() < MIN_POINTS {
         return None;

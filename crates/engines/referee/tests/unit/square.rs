@@ -82,6 +82,23 @@ fn the_corners_of_a_square_are_looked_at() {
     }
 }
 
+/// A face beside the ray is listed from the displacement that leads to it, whichever way that is: to the left, below, or along both
+/// vectors.
+#[test]
+fn a_face_is_near_from_its_distance_on() {
+    let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let ray = CastRay::new(DVec3::new(0.25, 0.25, 1.0), DVec3::NEG_Z);
+    for (beyond, [a, b]) in
+        [([-1.0, 0.5, 0.0], [2, 0]), ([0.5, -1.0, 0.0], [0, 1]), ([1.0, 1.0, 0.0], [1, 2])]
+    {
+        let corners = [&corners[..], &[beyond]].concat();
+        let mesh = Triangles::new(corners, vec![[0, 1, 2], [b, a, 3]]).expect("a mesh");
+        let near = |most: f64| ExactCast::new(&mesh).faces_near(&ray, Sides::Both, most);
+        assert_eq!(near(0.25 - 1e-12), [FaceId(0)], "{beyond:?}");
+        assert_eq!(near(0.25), [FaceId(0), FaceId(1)], "{beyond:?}");
+    }
+}
+
 /// What a moved ray meets is among the faces near the ray, and few others are.
 #[test]
 fn no_face_that_a_moved_ray_meets_is_left_out() {
