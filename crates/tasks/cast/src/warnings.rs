@@ -199,8 +199,8 @@ impl<'a> Misses<'a> {
         for &ray in &self.tried {
             let asked = change(ray);
             let hit =
-                self.exact.first(&asked, sides).first().and_then(|face| self.exact.values(&asked, *face));
-            let Some(range) = hit.map(|hit| hit.range.double) else { continue };
+                self.exact.first(&asked, sides).first().and_then(|face| self.exact.meeting(&asked, *face));
+            let Some(range) = hit.map(|hit| hit.range().double) else { continue };
             let tried = found.get_or_insert(Tried { hits: 0, nearest: range, ray });
             tried.hits += 1;
             if range < tried.nearest {

@@ -23,7 +23,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use raypencil_referee::{CastHit, ExactCast, Rounded, Ruling, aspect};
+use raypencil_referee::{CastMeeting, ExactCast, Rounded, Ruling, aspect};
 use raypencil_scene::{CastRay, FaceId, Precision, Progress, Reading, Sides, Triangles};
 
 use super::stated::Stated;
@@ -119,16 +119,16 @@ impl CastValue {
     }
 
     /// The exact parts, as [`Stated::part`] has those that are stated.
-    pub(crate) fn exact(self, hit: &CastHit) -> [f64; 3] {
+    pub(crate) fn exact(self, hit: &CastMeeting<'_>) -> [f64; 3] {
         let three = |parts: [Rounded; 3]| parts.map(|part| part.double);
         match self {
-            Self::T => [hit.t.double, 0.0, 0.0],
-            Self::Range => [hit.range.double, 0.0, 0.0],
-            Self::Side => [f64::from(side_number(hit.side)), 0.0, 0.0],
-            Self::Point => three(hit.point),
-            Self::Normal => three(hit.normal),
-            Self::Barycentric => three(hit.barycentric),
-            Self::CosIncidence => [hit.cos_incidence.double, 0.0, 0.0],
+            Self::T => [hit.t().double, 0.0, 0.0],
+            Self::Range => [hit.range().double, 0.0, 0.0],
+            Self::Side => [f64::from(side_number(hit.side())), 0.0, 0.0],
+            Self::Point => three(hit.point()),
+            Self::Normal => three(hit.normal()),
+            Self::Barycentric => three(hit.barycentric()),
+            Self::CosIncidence => [hit.cos_incidence().double, 0.0, 0.0],
         }
     }
 }
@@ -207,7 +207,7 @@ impl Judge<'_> {
                 judged(RayVerdict::Wrong(Wrong::Hit { stated, exact }))
             }
             Ruling::Exact | Ruling::Tie => {
-                let hit = stated.hit().and_then(|face| self.exact.values(ray, *face));
+                let hit = stated.hit().and_then(|face| self.exact.meeting(ray, *face));
                 let (wrong, ratios) = match hit {
                     None => (None, [None; 7]),
                     Some(hit) => self.values(index, ray, &hit),
@@ -237,7 +237,7 @@ impl Judge<'_> {
             return None;
         }
         for other in nearest.iter().filter(|other| **other != face) {
-            let Some(hit) = self.exact.values(ray, *other) else { continue };
+            let Some(hit) = self.exact.meeting(ray, *other) else { continue };
             if let (None, ratios) = self.values(index, ray, &hit) {
                 return Some((RayVerdict::Same { is_tie: true }, ratios));
             }
@@ -383,10 +383,10 @@ impl Judge<'_> {
         read: &Reading<Vec<FaceId>>,
     ) -> Result<FaceId, Wrong> {
         let value = if is_t { CastValue::T } else { CastValue::Range };
-        let of = |hit: &CastHit| if is_t { hit.t.double } else { hit.range.double };
+        let of = |hit: &CastMeeting<'_>| if is_t { hit.t().double } else { hit.range().double };
         let is_on = |ray: &CastRay, face: FaceId| {
             self.exact
-                .values(ray, face)
+                .meeting(ray, face)
                 .is_some_and(|hit| (of(&hit) - distance).abs() <= self.bound(value, index, ray, &hit))
         };
         let is_there = |face: &FaceId| is_on(ray, *face);
@@ -399,10 +399,15 @@ impl Judge<'_> {
             let faces = self.exact.all(&endless, self.sides).into_iter().flat_map(|group| group.faces);
             faces.map(|met| met.face).find(|face| is_on(&endless, *face) && self.is_excused(ray, *face))
         };
-        let value_of = |face: FaceId| self.exact.values(ray, face).map_or(f64::NAN, |hit| of(&hit));
+        let value_of = |face: FaceId| self.exact.meeting(ray, face).map_or(f64::NAN, |hit| of(&hit));
         let exact = read.clone().map(|faces| value_of(faces[0]));
         // A face that only a ray beside this one meets: its distance there is that of its plane, up to the bound.
         let beside = || {
+            // Most distances that are wrong are those of nothing around.
+            let is_near = |face: &FaceId| self.is_plane_at(index, ray, *face, distance, is_t);
+            if !self.faces_near(ray).iter().any(is_near) {
+                return None;
+            }
             let most = self.exact.lateral_error(ray, self.precision);
             let around = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
             around.into_iter().find_map(|by: [f64; 2]| {
@@ -429,32 +434,36 @@ impl Judge<'_> {
     }
 
     /// How far a value may be off by rounding.
-    fn bound(&self, value: CastValue, index: usize, ray: &CastRay, hit: &CastHit) -> f64 {
-        let range = self.exact.range_error(ray, hit.face, self.precision);
-        let lateral = self.exact.lateral_error(ray, self.precision);
-        let length = ray.direction.length();
+    fn bound(&self, value: CastValue, index: usize, ray: &CastRay, hit: &CastMeeting<'_>) -> f64 {
+        let range = || self.exact.range_error(ray, hit.face(), self.precision);
+        let lateral = || self.exact.lateral_error(ray, self.precision);
+        let normal = || normal_error(self.exact, self.mesh, ray, hit.face(), self.precision);
         let u = self.precision.unit_roundoff;
-        let [a, b, c] = self.mesh.corners(hit.face);
-        let edges = [b - a, c - b, a - c].map(DVec3::length);
-        let doubled_area = (b - a).cross(c - a).length();
-        let longest = edges[0].max(edges[1]).max(edges[2]);
-        let normal = normal_error(self.exact, self.mesh, ray, hit.face, self.precision);
         let of_arithmetic = match value {
-            CastValue::T => range / length,
-            CastValue::Range => range,
+            CastValue::T => range() / ray.direction.length(),
+            CastValue::Range => range(),
             CastValue::Side => 0.0,
-            CastValue::Point => range + lateral,
+            CastValue::Point => range() + lateral(),
             CastValue::Barycentric => {
-                lateral / (hit.cos_incidence.double.abs() * (doubled_area / longest)) + 16.0 * u
+                let [a, b, c] = self.mesh.corners(hit.face());
+                let edges = [b - a, c - b, a - c].map(DVec3::length);
+                let doubled_area = (b - a).cross(c - a).length();
+                let longest = edges[0].max(edges[1]).max(edges[2]);
+                lateral() / (hit.cos_incidence().double.abs() * (doubled_area / longest)) + 16.0 * u
             }
-            CastValue::Normal => normal,
-            CastValue::CosIncidence => normal + 8.0 * u,
+            CastValue::Normal => normal(),
+            CastValue::CosIncidence => normal() + 8.0 * u,
         };
         of_arithmetic + self.stated.stored.of(value, index)
     }
 
     /// The first value that is wrong, and all errors as parts of their bounds.
-    fn values(&self, index: usize, ray: &CastRay, hit: &CastHit) -> (Option<Wrong>, [Option<f64>; 7]) {
+    fn values(
+        &self,
+        index: usize,
+        ray: &CastRay,
+        hit: &CastMeeting<'_>,
+    ) -> (Option<Wrong>, [Option<f64>; 7]) {
         let mut wrong = None;
         let mut ratios = [None; 7];
         for value in CastValue::ALL {

@@ -34,8 +34,9 @@ pub(super) fn lengths(trial: &Trial, exact: &ExactCast<'_>, sides: Sides) -> Vec
     // A ray, with its exact t and range.
     let known = |k: usize| -> Option<(usize, [f64; 2])> {
         let face = *exact.reading(&trial.rays[k], sides).hit()?.first()?;
-        let hit = exact.values(&trial.rays[k], face)?;
-        (hit.range.double > 0.0).then_some((k, [hit.t.double, hit.range.double]))
+        let hit = exact.meeting(&trial.rays[k], face)?;
+        let range = hit.range().double;
+        (range > 0.0).then(|| (k, [hit.t().double, range]))
     };
     let known: Vec<(usize, [f64; 2])> = (0..trial.rays.len()).step_by(every).filter_map(known).collect();
     let pairs_of = |stated: &dyn Fn(usize) -> f64, which: usize| -> Vec<[f64; 2]> {

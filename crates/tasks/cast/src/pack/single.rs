@@ -99,7 +99,7 @@ impl Trial {
         let ray = &self.rays[index];
         let stated = self.stated.face.as_ref().and_then(|faces| faces[index]);
         let face = stated.or_else(|| exact.reading(ray, self.sides).hit().map(|faces| faces[0]));
-        let hit = face.filter(|_| self.stated.speaks(index).1).and_then(|face| exact.values(ray, face));
+        let hit = face.filter(|_| self.stated.speaks(index).1).and_then(|face| exact.meeting(ray, face));
         let Some(hit) = hit else { return Vec::new() };
         let of_value = |value: CastValue| {
             let stated = self.stated.part(value, index).filter(|_| value != CastValue::Side)?;

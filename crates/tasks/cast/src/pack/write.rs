@@ -56,7 +56,7 @@ impl RayPackCounts {
             let read = exact.reading(ray, sides);
             let differs = |ray: CastRay, sides| u64::from(exact.reading(&ray, sides) != read);
             let first: &[FaceId] = read.hit().map_or(&[], |faces| faces);
-            let hit = first.first().and_then(|face| exact.values(ray, *face));
+            let hit = first.first().and_then(|face| exact.meeting(ray, *face));
             Self {
                 rays: 1,
                 hits: u64::from(hit.is_some()),
@@ -66,12 +66,12 @@ impl RayPackCounts {
                 ties: u64::from(first.len() > 1),
                 backs: match (sides, &hit) {
                     // A program that hits fronts only is told apart by its first hit on a back.
-                    (Sides::Both, Some(hit)) => u64::from(hit.side == Side::Back),
+                    (Sides::Both, Some(hit)) => u64::from(hit.side() == Side::Back),
                     _ => differs(*ray, other),
                 },
                 t_min: differs(CastRay { t_min: 0.0, ..*ray }, sides),
                 t_max: differs(CastRay { t_max: f64::INFINITY, ..*ray }, sides),
-                lengths: u64::from(hit.is_some_and(|hit| hit.t.double != hit.range.double)),
+                lengths: u64::from(hit.is_some_and(|hit| hit.t().double != hit.range().double)),
             }
         };
         rays.par_iter().map(count).reduce(Self::default, |a, b| Self {

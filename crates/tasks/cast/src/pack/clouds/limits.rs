@@ -61,7 +61,7 @@ pub(super) fn of_ranges<'a>(list: &mut List<'a>, trial: &Trial, exact: &'a Exact
     let range = |k: usize| {
         let endless = CastRay { t_max: f64::INFINITY, t_blind: 0.0, ..trial.rays[k] };
         let face = *exact.first(&endless, sides).first()?;
-        Some(exact.values(&endless, face)?.range.double)
+        Some(exact.meeting(&endless, face)?.range().double)
     };
     let all: Vec<usize> = (0..trial.rays.len()).filter(is_missing).collect();
     let every = all.len().div_ceil(MAX_MISSING).max(1);

@@ -380,7 +380,7 @@ fn estimate<'a>(
     let range_of = |ray: &CastRay| {
         let read = exact.reading(ray, sides);
         let face = *read.hit()?.first()?;
-        Some(exact.values(ray, face)?.range.double)
+        Some(exact.meeting(ray, face)?.range().double)
     };
     let exact_of: Vec<(usize, f64)> =
         some.iter().filter_map(|&k| Some((k, range_of(&trial.rays[k])?))).collect();
