@@ -106,7 +106,7 @@ pub fn benched(subject: Subject) -> Result<Subject, PackError> {
 /// An earlier pack is removed first, beginning with its manifest. So a manifest always marks a complete pack, even if
 /// writing was interrupted, and no answer stays beside a scene that it does not belong to.
 ///
-/// ```
+/// ```no_run
 /// use raypencil_pack::{FileRole, Manifest, PackKind, PackLabel, blind_subject, write_pack};
 /// use raypencil_scene::Silent;
 ///

@@ -97,12 +97,25 @@ fn a_principal_point_left_from_the_default_image_is_told() {
     assert_eq!(json["warnings"].as_array().map(Vec::len), Some(1), "{json}");
 }
 
+/// The paper's approximations on a thick sheet.
+const PAPER: [&str; 4] = ["--thickness", "80", "--with", "scanline-paper,tracer"];
+
+/// The summary of their validation, and its screen: one run for the tests that look at it.
+fn of_the_paper() -> &'static (serde_json::Value, String) {
+    static RUN: std::sync::OnceLock<(serde_json::Value, String)> = std::sync::OnceLock::new();
+    RUN.get_or_init(|| {
+        let folder = folder();
+        let arguments = [["validate", "pyramids", "-o", "out"].as_slice(), &PAPER].concat();
+        let shown = screen(folder.path(), &arguments, 0);
+        let summary = std::fs::read(folder.path().join("out/summary.json")).expect("a summary");
+        (serde_json::from_slice(&summary).expect("JSON"), shown)
+    })
+}
+
 #[test]
 fn a_text_for_a_pipe_is_not_cut() {
     // Of the paper's approximations on a thick sheet a line gets longer than a terminal is wide.
-    let folder = folder();
-    let paper = ["validate", "pyramids", "--thickness", "80", "--with", "scanline-paper,tracer"];
-    let shown = screen(folder.path(), &paper, 0);
+    let (_, shown) = of_the_paper();
     let line =
         shown.lines().find(|line| line.starts_with("camera  1,048,576 rays: ")).expect("the camera's line");
     assert!(line.contains(" approximation; ") && line.ends_with(" hit"), "{shown}");
@@ -165,12 +178,9 @@ fn probe_prints_every_answer_to_one_ray() {
 #[test]
 fn the_papers_errors_have_causes() {
     // With a sheet of 80 mm, the straight side of a pyramid's face is drawn beyond pencil 715,4.
+    let (summary, _) = of_the_paper();
     let folder = folder();
-    let paper = ["--thickness", "80", "--with", "scanline-paper,tracer"];
-    let arguments = [["validate", "pyramids", "--json", "-o", "out"].as_slice(), &paper].concat();
-    let output = raypencil(folder.path(), &arguments);
-    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let paper = PAPER;
     assert_eq!(summary["defects"], 0);
     let of_cause = summary["approximations"]["beam-edges"].as_u64().expect("rays of that cause");
     assert!(of_cause > 10, "{summary:#}");

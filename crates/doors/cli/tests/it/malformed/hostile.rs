@@ -14,7 +14,7 @@ use serde_json::Value;
 use super::{assert_all, run, runner};
 
 /// One in so many cases of a large family is run here.
-const STRIDE: usize = 31;
+const STRIDE: usize = 61;
 
 /// One in so many cases of an older family is: they are smaller, and each of their cases is another idea.
 const SMALL_STRIDE: usize = 5;
