@@ -156,7 +156,7 @@ impl<'a> FaceMarginSearch<'a> {
             if nearer && max_norm(at) <= 1.0 && differs(at) {
                 *best = Some(at);
             }
-            best.is_some_and(|best| max_norm(best) <= self.lo * 1.01 + 1e-12)
+            best.is_some_and(|best| self.is_near_enough(best))
         };
         for event in &self.events {
             match &event.kind {
@@ -197,6 +197,11 @@ impl<'a> FaceMarginSearch<'a> {
             }
         }
         best
+    }
+
+    /// Whether no nearer witness is looked for.
+    fn is_near_enough(&self, witness: [f64; 2]) -> bool {
+        max_norm(witness) <= self.lo * 1.01 + 1e-12
     }
 
     /// Points of a face near its corners and along its sides, inside by a part of its width, the nearest first.

@@ -305,3 +305,7 @@ impl ContinuityProof<'_, '_> {
         least
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/sheet.rs"]
+mod tests;

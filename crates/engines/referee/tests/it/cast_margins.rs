@@ -54,6 +54,20 @@ fn a_step_ends_the_surface_and_an_edge_between_two_faces_does_not() {
     assert!(margins.surface.lo == 0.0 && margins.surface.hi < 1e-15, "{margins:?}");
 }
 
+/// The witness of a step is hardly past it: 2^-40 of the margin along the border, on either side of its nearest place, and a 16th of that
+/// beyond.
+#[test]
+fn a_witness_is_close_behind_the_border() {
+    let square = mesh(&SQUARE, &[[0, 1, 2], [0, 2, 3]]);
+    let cast = ExactCast::new(&square);
+    // The border y = 0 is nearest, and the first part of a displacement is along y.
+    let margin = cast.margins(&down(0.5, 0.25, 4.0), Sides::Both).surface;
+    let by = margin.witness.expect("a witness");
+    let along = 0.25 / (1u64 << 40) as f64;
+    assert_eq!(by.dx, -0.25 - along / 16.0);
+    assert!((by.dy.abs() / along - 1.0).abs() < 1e-12, "{by:?}");
+}
+
 #[test]
 fn many_faces_in_one_place_have_the_margins_of_one() {
     // Copies of a face, also begun at another corner and turned over.

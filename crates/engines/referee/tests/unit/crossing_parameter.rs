@@ -2,7 +2,7 @@
 
 use super::super::tests::holds_quotient;
 use super::*;
-use crate::numbers::number::Dyadic;
+use crate::numbers::number::{Dyadic, Number};
 use crate::numbers::vector::Vector;
 use crate::splitmix::SplitMix64;
 
@@ -63,4 +63,20 @@ fn what_is_out_of_bounds_or_uncertain_is_unknown() {
     // A ray that starts on the plane, and one along it.
     assert!(crossing_parameter(corners[0], direction, corners).is_none());
     assert!(crossing_parameter(origin, corners[1] - corners[0], corners).is_none());
+}
+
+/// The error covers the roundings of its own quotient, too. t is a whole number here, and w lies in the plane: r = 0, and what is left of
+/// the error is R / (|g| - G) with R = 256 u^2 W, which is no f64 number.
+#[test]
+fn the_error_of_t_is_no_less_than_its_formula() {
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    for far in (1..50).map(f64::from) {
+        let t = crossing_parameter(far * DVec3::Z, DVec3::new(1.0, 0.0, -1.0), corners).expect("a crossing");
+        let [high, low, error] = t.parts();
+        assert_eq!((high, low), (far, 0.0));
+        let least = Dyadic::of(1.0).sub(&Dyadic::of(32.0 * f64::EPSILON));
+        let of_rest = 64.0 * f64::EPSILON * f64::EPSILON * far;
+        let missing = Dyadic::of(of_rest).sub(&Dyadic::of(error).mul(&least));
+        assert_ne!(missing.sign(), Some(std::cmp::Ordering::Greater), "{far}: {error}");
+    }
 }

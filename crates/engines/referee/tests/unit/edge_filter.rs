@@ -119,3 +119,18 @@ fn the_t_of_a_face_is_in_a_narrow_interval() {
     }
     assert!(narrow > 1000, "{narrow}");
 }
+
+/// The bound of t covers the roundings of its own quotient, too. A ray that starts in the plane has t = 0, and A, E and |D| are whole
+/// numbers here: the bound is 64 u A / (1 - 64 u), which is no f64 number.
+#[test]
+fn the_bound_of_t_is_no_less_than_its_formula() {
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    let of_each = 32.0 * f64::EPSILON;
+    for far in (1..50).map(f64::from) {
+        let t = EdgeFilter::exactly(far * DVec3::X, DVec3::Z).t_of_plane(corners).expect("an interval");
+        assert_eq!(t.low, -t.high);
+        let least = Dyadic::of(1.0).sub(&Dyadic::of(of_each));
+        let missing = Dyadic::of(of_each * far).sub(&Dyadic::of(t.high).mul(&least));
+        assert_ne!(missing.sign(), Some(Ordering::Greater), "{far}: {}", t.high);
+    }
+}

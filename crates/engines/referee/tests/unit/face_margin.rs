@@ -10,7 +10,7 @@ use crate::hits::verdict::Referee;
 use crate::rays::ray::{Aim, MountedSensor};
 
 #[test]
-fn threads_lie_in_the_face_by_a_part_of_its_width() {
+fn witnesses_are_looked_for_in_the_face_by_a_part_of_its_width() {
     // Pixel (4, 4) looks along z; at a depth of 2 m a cell is 1/4 m.
     let corners = [[-0.125, -0.125, 2.0], [0.0, 0.125, 2.0], [0.125, -0.0625, 2.0]];
     let material = Material { name: "ground".into(), reflectivity: 0.25 };
@@ -34,7 +34,12 @@ fn threads_lie_in_the_face_by_a_part_of_its_width() {
     let near = Neighbourhood::new(&referee, &sensor, Aim { i: 4, j: 4, dx: 0.0, dy: 0.0 });
     assert_eq!(near.faces.len(), 1);
     let nearest = near.nearest_at([0.0; 2]);
-    let threads = FaceMarginSearch::of(&near, &nearest, [0.0; 2], 1.0).threads(0);
+    let search = FaceMarginSearch::of(&near, &nearest, [0.0; 2], 1.0);
+    // A witness at the limit is near enough.
+    let limit = search.lo * 1.01 + 1e-12;
+    assert!(search.lo > 0.0 && search.is_near_enough([-limit, 0.0]));
+    assert!(!search.is_near_enough([0.0, limit.next_up()]));
+    let threads = search.threads(0);
     assert_eq!(threads.len(), 3 * 15 * 3);
     assert!(threads.windows(2).all(|two| max_norm(two[0]) <= max_norm(two[1])));
     // Along each side from each corner, by weights that add up to 1.

@@ -1,8 +1,11 @@
 //! What the screen calls "before" is so by more than the bound of its page.
 
+use std::cmp::Ordering;
+
 use raypencil_scene::CastRay;
 
 use super::*;
+use crate::numbers::number::{Dyadic, Number};
 
 #[test]
 fn a_face_is_before_a_place_if_it_is_so_by_more_than_the_bound() {
@@ -35,8 +38,15 @@ fn the_least_size_of_a_segment_is_hardly_less_than_the_way_to_its_line() {
     let cases =
         [([3.0, 0.0], [0.0, 3.0], 1.5), ([-0.5, -2.0], [0.25, -2.0], 2.0), ([-1.0, -1.0], [2.0, 2.0], 0.0)];
     for (p, q, expected) in cases {
-        let size = screen.least_size_of_segment([p, q].map(|[a, b]| DVec3::new(a, b, 1.0)));
+        let [p, q] = [p, q].map(|[a, b]| DVec3::new(a, b, 1.0));
+        let size = screen.least_size_of_segment([p, q]);
         assert!(size <= expected && size >= expected - 1e3 * screen.slack, "{size} is not {expected}");
+        // (|turn| - bound) / (|q - p| + 5 E) without rounding is no less.
+        let Bounded { value, bound } = screen.turn(DVec3::ZERO, p, q);
+        let of = Dyadic::of;
+        let along = of((q.x - p.x).abs() + (q.y - p.y).abs()).add(&of(5.0).mul(&of(screen.slack)));
+        let left = of(value.abs()).sub(&of(bound)).sub(&along.mul(&of(size)));
+        assert!(size == 0.0 || left.sign() != Some(Ordering::Less), "{size}");
     }
 }
 

@@ -5,7 +5,9 @@ use std::ops::AddAssign;
 use glam::DVec3;
 use raypencil_scene::{CastRay, FaceId, Sides, Triangles};
 
+use super::Square;
 use crate::cast::ExactCast;
+use crate::cast::triangle::Triangle;
 use crate::soup::soup;
 use crate::splitmix::SplitMix64;
 
@@ -56,6 +58,20 @@ fn a_square_is_as_large_as_it_says() {
     let is_steady = |most: f64| ExactCast::new(&mesh).is_steady(&ray, Sides::Both, most);
     assert!(is_steady(0.25 - 1e-12));
     assert!(!is_steady(0.25));
+}
+
+/// A ray begins at its start itself: a square whose least t is there is steady, and one whose least t is before it is not.
+#[test]
+fn a_square_may_begin_at_the_start_of_its_ray() {
+    let mesh =
+        Triangles::new(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]]).expect("a mesh");
+    let cast = ExactCast::new(&mesh);
+    let ray = CastRay::new(DVec3::new(0.25, 0.25, 1.0), DVec3::NEG_Z);
+    let least = Square::new(&ray, 0.125).t(&Triangle::of(&mesh, FaceId(0))).low;
+    let is_steady = |t_min: f64| cast.is_steady(&CastRay { t_min, ..ray }, Sides::Both, 0.125);
+    assert!(least < 1.0 && is_steady(least));
+    // All rays meet the face at t = 1, but intervals do not tell.
+    assert!(!is_steady(least.next_up()));
 }
 
 /// A face that only the corner of the square reaches is looked at, in whatever direction the corner is.

@@ -231,3 +231,17 @@ fn a_ray_beside_excuses_what_is_true_of_it() {
         assert_eq!(rule(7.0), rule(1.0), "a cell at most");
     }
 }
+
+/// A lid covers a part as large as the part that its conditions hold in, and no larger one.
+#[test]
+fn a_lid_covers_what_its_conditions_hold_in() {
+    let always = Form { constant: 1.0, x: 0.0, y: 0.0, xy: 0.0, error: 0.0, bend: 0.0 };
+    let before_the_point = Form { constant: 0.5, x: 1.0, ..always };
+    let face = ground();
+    let hides = [always, always, always, always, before_the_point, always];
+    let lid = Occluder { face: &face, turned_to_camera: true, hides };
+    let hit = HitFace { is_front_seen: true, lands: [always; 5], occluders: vec![lid] };
+    let is_covered = |half: f64| hit.is_covered(&Square { middle: [0.0; 2], half });
+    let most = before_the_point.holds_within();
+    assert!((most - 0.5).abs() < 1e-11 && is_covered(most) && !is_covered(most.next_up()), "{most}");
+}

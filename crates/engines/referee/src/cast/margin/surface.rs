@@ -385,7 +385,8 @@ impl ExactCast<'_> {
             [(1.0, 1.0 / 16.0), (1.0, 1.0), (1.0 / 16.0, 1.0 / 256.0), (16.0, 1.0), (0.5, 1.0 / 65536.0)];
         let witness =
             tried.iter().find(|by| beyond(by)).map(|&(along_by, right_by)| beside(along_by, right_by));
-        within(bounds, witness, 2.0 * self.smallest_size(frame), cap)
+        // All that is tried is nearer to the place than a hundredth of its size, or than this.
+        within(bounds, witness, self.smallest_size(frame), cap)
     }
 }
 
@@ -409,7 +410,8 @@ fn cut_edges(face: &FlatFace<Dyadic>, at: &Dyadic, keeps_later: bool) -> Option<
         let sign = corner.0[2].sub(at).sign().unwrap_or(Ordering::Equal);
         if keeps_later { sign } else { sign.reverse() }
     });
-    if !signs.contains(&Ordering::Greater) || !signs.contains(&Ordering::Less) {
+    // A face beyond `at` that touches it is not cut. One that lies all on the right side is never left.
+    if !signs.contains(&Ordering::Greater) {
         return None;
     }
     let is_kept = |k: usize| signs[k % 3] != Ordering::Less;
