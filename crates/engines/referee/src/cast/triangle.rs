@@ -41,8 +41,10 @@ impl Triangle {
 
     /// Whether the face has an area, exactly. A face without one is never met.
     pub(super) fn has_area(&self) -> bool {
-        let certainly = self.normal::<Interval>().0.iter().any(|part| part.low > 0.0 || part.high < 0.0);
-        certainly || self.normal::<Dyadic>().0.iter().any(|part| part.sign() != Some(Ordering::Equal))
+        fn has_normal<T: Number>(face: &Triangle) -> bool {
+            face.normal::<T>().0.iter().any(|part| part.sign().is_some_and(Ordering::is_ne))
+        }
+        has_normal::<Interval>(self) || has_normal::<Dyadic>(self)
     }
 
     pub(super) fn corner<T: Number>(&self, k: usize) -> Vector<T> {

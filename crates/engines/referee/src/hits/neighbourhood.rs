@@ -131,7 +131,7 @@ impl<'a> Neighbourhood<'a> {
         let mut nearest: Vec<usize> = Vec::new();
         for index in faces {
             let [low, high] = &self.bounds[index];
-            let inside = low[0] <= at[0] && at[0] <= high[0] && low[1] <= at[1] && at[1] <= high[1];
+            let inside = (0..2).all(|axis| (low[axis]..=high[axis]).contains(&at[axis]));
             let forms = &self.faces[index];
             if !inside || !self.is_met(forms, at, exact) {
                 continue;
@@ -239,7 +239,7 @@ impl EdgeIndex {
         }
         let fresh = faces[self.faces..].iter().enumerate().map(|(k, f)| ((self.faces + k) as u32, f.face));
         let aside = beside[self.beside..].iter().enumerate();
-        let fresh = fresh.chain(aside.map(|(k, &face)| ((self.beside + k) as u32 | BESIDE_BIT, face)));
+        let fresh = fresh.chain(aside.map(|(k, &face)| ((self.beside + k) as u32 + BESIDE_BIT, face)));
         for (index, face) in fresh {
             let corners = face.corners;
             for k in 0..3 {

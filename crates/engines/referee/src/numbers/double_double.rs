@@ -100,11 +100,10 @@ impl DoubleDouble {
         (self.high.abs() + self.low.abs() + self.error) * ROUNDED_UP
     }
 
-    /// A lower bound of the true number's absolute value.
+    /// A lower bound of the true number's absolute value: |lo| is at most 2^-53 |hi|, and the first factor takes twice that.
     #[inline]
     fn lower_bound(&self) -> f64 {
-        ((self.high.abs() - self.low.abs()) * (1.0 - f64::EPSILON) - self.error * ROUNDED_UP)
-            * (1.0 - f64::EPSILON)
+        (self.high.abs() * (1.0 - f64::EPSILON) - self.error * ROUNDED_UP) * (1.0 - f64::EPSILON)
     }
 
     /// The absolute value.

@@ -75,6 +75,9 @@ pub(crate) struct LeadingBits {
 /// Number of bits that decides any rounding to 53, with room to spare.
 const MIN_BITS: usize = 70;
 
+/// Number of bits of a square whose root has so many.
+const MIN_BITS_OF_SQUARE: usize = 2 * MIN_BITS + 1;
+
 impl LeadingBits {
     /// (magnitude + a part of 1, unless it is exact) 2^exponent. An inexact magnitude has at least [`MIN_BITS`] bits.
     pub(crate) fn of(is_negative: bool, magnitude: UBig, exponent: i64, is_exact: bool) -> Self {
@@ -128,6 +131,11 @@ impl LeadingBits {
     }
 }
 
+/// By how many bits p must be shifted so that p / q has this many, or one more.
+fn shift_for(bits: usize, p: &UBig, q: &UBig) -> usize {
+    (q.bit_len() + bits).saturating_sub(p.bit_len())
+}
+
 /// p / q, correctly rounded; q is not 0.
 pub(crate) fn quotient(p: &Dyadic, q: &Dyadic) -> Rounded {
     let ((sign_p, p, exponent_p), (sign_q, q, exponent_q)) = (p.parts(), q.parts());
@@ -135,7 +143,7 @@ pub(crate) fn quotient(p: &Dyadic, q: &Dyadic) -> Rounded {
         return Rounded::ZERO;
     }
     // Shift p so that the quotient has enough bits.
-    let shift = (q.bit_len() + MIN_BITS).saturating_sub(p.bit_len());
+    let shift = shift_for(MIN_BITS, &p, &q);
     let (whole, rest) = (p << shift).div_rem(q);
     let exponent = exponent_p - exponent_q - shift as i64;
     LeadingBits::of(sign_p != sign_q, whole, exponent, rest.is_zero()).rounded()
@@ -147,7 +155,7 @@ pub(crate) fn root(sign: Sign, p: &Dyadic, q: &Dyadic) -> Rounded {
     if p.is_zero() {
         return Rounded::ZERO;
     }
-    let shift = (q.bit_len() + 2 * MIN_BITS + 1).saturating_sub(p.bit_len());
+    let shift = shift_for(MIN_BITS_OF_SQUARE, &p, &q);
     // The exponent of the square must be even.
     let exponent = exponent_p - exponent_q - shift as i64;
     let odd = exponent.rem_euclid(2);

@@ -88,7 +88,7 @@ impl ShortInteger {
         let mut carry = 0;
         for k in 0..self.length() {
             let limb = self.limbs[k];
-            limbs[k + by] = (limb << rest) | carry;
+            limbs[k + by] = (limb << rest) + carry;
             carry = if rest == 0 { 0 } else { limb >> (64 - rest) };
         }
         let mut length = self.length() + by;

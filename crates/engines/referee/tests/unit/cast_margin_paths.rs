@@ -1,6 +1,7 @@
 //! The fast ways to a margin against the slow ones: the same bits on meshes that are hard for them, and counts that prove that the
 //! fast ways are taken.
 
+use std::cmp::Ordering;
 use std::rc::Rc;
 
 use glam::DVec3;
@@ -11,8 +12,8 @@ use super::super::triangle::Triangle;
 use super::flat::{FlatFace, Linear, corner_of};
 use super::hidden::{Hidden, WalkedFace};
 use super::looks::LOOKS;
-use super::region::{LazyLinear, least_size};
-use super::segment::{Border, Piece, Segment};
+use super::region::{LazyLinear, least_size, triples};
+use super::segment::{AtPlace, Border, Piece, Place, Segment};
 use super::*;
 use crate::numbers::number::{Dyadic, Interval, Number};
 use crate::numbers::vector::Vector;
@@ -409,5 +410,64 @@ fn what_may_be_shown_has_room_for_rounding() {
         assert!(frame.may_show(&[vertex; 3], at, 0.0), "{vertex} by {ray:?}");
         // And hardly beside it.
         assert!(!frame.may_show(&[vertex; 3], [at[0] + 1e-9, at[1]], 0.0), "{vertex} by {ray:?}");
+    }
+}
+
+#[test]
+fn three_of_four_conditions_are_one_of_four_sets() {
+    assert_eq!(triples(4).collect::<Vec<_>>(), [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]);
+    assert_eq!(triples(6).count(), 20);
+}
+
+/// At an end of a segment the value is that of the end: an exact 0 stays one.
+#[test]
+fn intervals_tell_a_zero_at_an_end() {
+    let [zero, one] = [0.0, 1.0].map(Interval::of);
+    for (values, place) in [([zero, one], Place::start()), ([one, zero], Place::end())] {
+        assert_eq!(Interval::at(&place, &values).sign(), Some(Ordering::Equal));
+    }
+}
+
+/// What touches an end of the ray may be cut by it: ends and faces have room for rounding.
+#[test]
+fn what_touches_an_end_is_cut() {
+    let ray = CastRay { t_min: 1.0, t_max: 4.0, ..CastRay::new(DVec3::ZERO, DVec3::Z) };
+    let frame = Frame::new(&ray);
+    let [first, last] = frame.ranges();
+    assert!(frame.is_cut([first, 2.0]) && frame.is_cut([2.0, last]) && frame.is_cut([0.0, 9.0]));
+    assert!(!frame.is_cut([first.next_up(), last.next_down()]));
+}
+
+/// Sizes that intervals tell are not formed without rounding. Where the ray passes an edge itself, intervals do not tell.
+#[test]
+fn a_face_margin_that_intervals_tell_has_no_exact_numbers() {
+    // In the plane z = x / 3 + y / 5, up to x = y.
+    let at = |x: f64, y: f64| DVec3::new(x, y, x / 3.0 + y / 5.0);
+    let mesh = mesh(&vec![[at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0)]], 1.0, DVec3::ZERO);
+    let cast = ExactCast::new(&mesh);
+    for (x, y, is_exact) in [(0.5, 0.375, false), (0.5, 0.4375, false), (0.5, 0.5, true)] {
+        let ray = CastRay::new(DVec3::new(x, y, 4.0), DVec3::NEG_Z);
+        let frame = Frame::new(&ray);
+        let view = View::new(&mesh, cast.seams(), &ray, Sides::Both);
+        let margin = cast.face_margin(&frame, &cast.nearest(&ray, Sides::Both), &view);
+        assert!((margin.lo - 0.5 * (x - y)).abs() < 1e-12, "{margin:?}");
+        assert_eq!(frame.has_exact(), is_exact, "{x}, {y}");
+    }
+}
+
+/// An edge whose middle is before the start of the ray, or at it, is hidden by nothing: no face is looked at.
+#[test]
+fn nothing_is_asked_whether_it_hides_an_edge_before_the_start() {
+    let corners = vec![right_triangle(DVec3::ZERO, 1.0), right_triangle(DVec3::new(-1.0, -1.0, 1.0), 4.0)];
+    let mesh = mesh(&corners, 1.0, DVec3::ZERO);
+    let cast = ExactCast::new(&mesh);
+    // The lower face is met at t = 3, the upper one at 2.
+    for (t_min, is_asked) in [(0.0, true), (3.0, false), (3.5, false)] {
+        let ray = CastRay { t_min, ..CastRay::new(DVec3::new(0.25, 0.25, 3.0), DVec3::NEG_Z) };
+        let frame = Frame::new(&ray);
+        let screen = Screen::new(&frame, 3.0).expect("a frame of this size");
+        LOOKS.set(0);
+        assert_eq!(cast.is_edge_hidden(&screen, (FaceId(0), Side::Front, 0), Sides::Both), is_asked, "{t_min}");
+        assert_eq!(LOOKS.get() > 0, is_asked, "{t_min}");
     }
 }

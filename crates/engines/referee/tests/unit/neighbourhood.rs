@@ -47,4 +47,13 @@ fn the_range_of_a_grazing_ray_is_that_of_the_displaced_ray() {
         let found = near.range_at(at).expect("the ground is met");
         assert!((found / expected - 1.0).abs() < 1e-14, "{at:?}: {found} {expected}");
     }
+    // To the last bit, which f64 does not tell.
+    let mut rounded_otherwise = 0;
+    for at in (0..64).map(|k| [f64::from(k) / 67.0, f64::from(k % 9) / 9.0 - 0.5]) {
+        let exact = ExactRay::new(&sensor, Aim { i: 1, j: 1, dx: at[0], dy: at[1] });
+        assert_eq!(near.range_at(at), Some(near.faces[0].face.range(&exact)), "{at:?}");
+        let (range, _) = near.faces[0].range_at(&near.ray, at);
+        rounded_otherwise += u32::from(near.range_at(at) != Some(range));
+    }
+    assert!(rounded_otherwise > 8, "{rounded_otherwise}");
 }

@@ -81,3 +81,12 @@ fn midpoints_go_to_the_even_neighbour() {
     let hair = exactly(1e-300);
     assert_eq!(root(Sign::Positive, &square(1).add(&hair), &one).double, 1.0 + f64::EPSILON);
 }
+
+/// A number of 3 bits over one of 5 is shifted by 2 bits more than the quotient is to have; one that is long enough is not shifted.
+#[test]
+fn a_dividend_is_shifted_by_what_the_quotient_wants() {
+    let [three, five, hundred] = [3, 5, 100].map(|bits: usize| UBig::ONE << (bits - 1));
+    assert_eq!(shift_for(70, &three, &five), 72);
+    assert_eq!(shift_for(141, &five, &three), 139);
+    assert_eq!(shift_for(70, &hundred, &five), 0);
+}

@@ -1,6 +1,9 @@
 //! Unit tests of `wide_boxes`.
 
+use raypencil_scene::FaceId;
+
 use super::*;
+use crate::trees::bvh::{Bvh, InBox};
 
 /// A hierarchy of boxes around points that a counter scatters over `size` metres around `middle`.
 fn scattered(count: u32, middle: DVec3, size: f64) -> Vec<Node> {
@@ -130,4 +133,49 @@ fn empty_and_single_boxes_are_walked() {
     assert!(walk(&WideBoxes::of(&[leaf(11.0)]), &ahead).is_empty());
     let up = RayBundle { direction: DVec3::Z, origin: DVec3::new(-0.5, 0.5, -3.0), ..ahead };
     assert!(walk(&WideBoxes::of(&[leaf(0.0)]), &up).is_empty());
+}
+
+/// Something at a place, as a hierarchy holds it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Speck(u32, DVec3);
+
+impl InBox for Speck {
+    fn id(&self) -> FaceId {
+        FaceId(self.0)
+    }
+
+    fn corners(&self) -> [DVec3; 3] {
+        [self.1, self.1 + 0.01 * DVec3::X, self.1 + 0.01 * DVec3::Y]
+    }
+
+    fn middle(&self, axis: usize) -> f64 {
+        self.1[axis]
+    }
+}
+
+/// A hierarchy without nodes is as sharp as one with them, far from the origin, too: its boxes are relative to the middle of all.
+#[test]
+fn a_hierarchy_for_walks_shows_what_one_with_nodes_shows() {
+    let middle = DVec3::new(3e7, -5e6, 1e6);
+    let specks: Vec<Speck> = scattered(300, middle, 10.0)
+        .iter()
+        .filter(|node| node.count > 0)
+        .map(|node| Speck(node.first, node.low))
+        .collect();
+    let both = [Bvh::build(specks.clone()), Bvh::for_walks(specks.clone())];
+    for speck in specks.iter().step_by(10) {
+        let origin = middle - 20.0 * DVec3::X;
+        let direction = (speck.1 - origin).normalize();
+        let bundle = RayBundle { origin, direction, max_range: 100.0, start_radius: 0.001, spread: 0.0 };
+        let [with, without] = both.each_ref().map(|bvh| {
+            let mut shown = Vec::new();
+            bvh.visit(&bundle, |speck| {
+                shown.push(*speck);
+                bundle.max_range
+            });
+            shown
+        });
+        assert_eq!(with, without);
+        assert!(with.contains(speck) && with.len() < 60, "{}", with.len());
+    }
 }

@@ -392,3 +392,38 @@ fn rays_that_follow_each_other_walk_one_by_one_and_have_the_same_answers() {
     let hits = any.iter().filter(|&&any| any).count();
     assert!(hits > 800 && hits < 1500 && all.iter().all(Option::is_some), "{hits} hits");
 }
+
+/// Which ray looked at a face, one after the other.
+struct InTurns {
+    rays: Vec<FrameRay>,
+    looks: Vec<usize>,
+}
+
+impl Rays for InTurns {
+    fn begin(&mut self, _: usize) -> Option<FrameRay> {
+        self.rays.pop()
+    }
+
+    fn see(&mut self, place: usize, _: &Triangle) -> Next {
+        self.looks.push(place);
+        Next::On
+    }
+
+    fn end(&mut self, _: usize) {}
+}
+
+/// While one ray waits for memory, the other goes on: each enters one leaf a turn.
+#[test]
+fn rays_that_walk_together_take_turns() {
+    let (mesh, _) = moved_and_scaled(&lattice(), DVec3::ZERO, 1.0);
+    let tree = WideTree::of(&mesh);
+    // Along the diagonal, closely over the ground, so that each of the two passes many leaves.
+    let ray = CastRay::new(DVec3::new(-2.0, -2.0, 0.01), DVec3::new(1.0, 1.0, -0.004));
+    let ray = tree.ray(&ray).expect("a ray that is near");
+    let mut rays = InTurns { rays: vec![ray; 2], looks: Vec::new() };
+    tree.walk_together(mesh.vertices(), &mut rays, 2);
+    let changes = rays.looks.windows(2).filter(|two| two[0] != two[1]).count();
+    let of_first = rays.looks.iter().filter(|&&place| place == 0).count();
+    assert_eq!(2 * of_first, rays.looks.len());
+    assert!(changes > 6, "{changes} of {:?}", rays.looks);
+}

@@ -186,7 +186,7 @@ pub(super) fn least_size(
 }
 
 /// All three of so many.
-fn triples(count: usize) -> impl Iterator<Item = [usize; 3]> {
+pub(super) fn triples(count: usize) -> impl Iterator<Item = [usize; 3]> {
     (0..count).flat_map(move |i| (i + 1..count).flat_map(move |j| (j + 1..count).map(move |k| [i, j, k])))
 }
 

@@ -130,7 +130,7 @@ impl ExactCast<'_> {
                     if least_size(span) >= cap || near > last || far < first {
                         return false;
                     }
-                    let is_cut = near <= first || far >= last;
+                    let is_cut = frame.is_cut(span[2]);
                     let shown = view.side_shown(node);
                     // Where all show one side there is no border; where all show backs that are not hit, nothing.
                     shown == 0 || (is_cut && (shown < 0 || view.sides() == Sides::Both))
@@ -205,8 +205,8 @@ impl ExactCast<'_> {
         let corner = |k: usize| face.corners[corner_of(side, k)];
         let span_of = |a: DVec3, b: DVec3| frame.span(a.min(b), a.max(b));
         let [a, b, c] = face.corners;
-        let [near, far] = frame.span(a.min(b).min(c), a.max(b).max(c))[2];
-        let is_cut = near <= first || far >= last;
+        let whole = frame.span(a.min(b).min(c), a.max(b).max(c));
+        let is_cut = frame.is_cut(whole[2]);
         for k in 0..3 {
             // Both faces show the same side: they continue one another, unless the edge is where an end cuts them.
             if !is_cut && self.continued(face.id, side, k, view).is_some() {
@@ -220,7 +220,6 @@ impl ExactCast<'_> {
         if !is_cut {
             return;
         }
-        let whole = frame.span(a.min(b).min(c), a.max(b).max(c));
         let numbers = frame.exact();
         let flat = self.flat(numbers, face.id, side);
         let ends = [Some((&numbers.from, true)), numbers.to.as_ref().map(|to| (to, false))];
@@ -314,7 +313,7 @@ impl ExactCast<'_> {
             // Where thousands lie on one another, one of the first mostly covers all of the piece.
             if doubtful.len() == MAX_DOUBTFUL {
                 until = farthest(until.take(), &mut doubtful);
-                is_hidden |= until.as_ref().is_some_and(|until| until.compare(&piece.far) == Ordering::Equal);
+                is_hidden = until.as_ref().is_some_and(|until| until.compare(&piece.far) == Ordering::Equal);
             }
             if is_hidden { f64::NEG_INFINITY } else { bundle.max_range }
         });

@@ -18,8 +18,8 @@ struct Item {
 
 impl Item {
     fn of(frame: &Frame, place: u32, face: &Triangle) -> Self {
-        let [a, b, c] = face.corners.map(|corner| frame.of_point(corner).as_vec3());
-        Self { middle: (a + b + c).to_array(), place }
+        let corners = face.corners.map(|corner| frame.of_point(corner).as_vec3());
+        Self { middle: corners.into_iter().sum::<Vec3>().to_array(), place }
     }
 }
 
