@@ -137,10 +137,11 @@ impl Number for Interval {
 
     #[inline]
     fn mul(&self, other: &Self) -> Self {
-        let [a, b, c, d] =
+        let products =
             [self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high];
+        let [a, b, c, d] = products;
         // Comparisons are one instruction each, but lose what `min` keeps beside a product of 0 and infinity.
-        if (a + b + c + d).is_nan() {
+        if products.iter().sum::<f64>().is_nan() {
             return widened(a.min(b).min(c.min(d)), a.max(b).max(c.max(d)));
         }
         let less = |x: f64, y: f64| if x < y { x } else { y };

@@ -395,3 +395,7 @@ fn square_root(x: Interval) -> Interval {
     // The roots are correctly rounded: an error of half a unit in the last place.
     Interval::between(x.low.max(0.0).sqrt(), x.high.max(0.0).sqrt()).wider(0.0)
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/raster.rs"]
+mod tests;

@@ -126,7 +126,7 @@ impl<'a> VisibilitySearch<'a> {
         let (lo, witness) = subdivide(0.0, None, |square, lo| {
             if self.is_proven(square) { None } else { Some(self.changed_in(square, lo)) }
         });
-        if lo >= 1.0 { Margin::CAPPED } else { Margin::of(lo, witness) }
+        Margin::of(lo, witness)
     }
 
     /// The nearest place in and around a part at which the answer differs. Tried are its middle, its corners, and

@@ -467,7 +467,11 @@ fn nothing_is_asked_whether_it_hides_an_edge_before_the_start() {
         let frame = Frame::new(&ray);
         let screen = Screen::new(&frame, 3.0).expect("a frame of this size");
         LOOKS.set(0);
-        assert_eq!(cast.is_edge_hidden(&screen, (FaceId(0), Side::Front, 0), Sides::Both), is_asked, "{t_min}");
+        assert_eq!(
+            cast.is_edge_hidden(&screen, (FaceId(0), Side::Front, 0), Sides::Both),
+            is_asked,
+            "{t_min}"
+        );
         assert_eq!(LOOKS.get() > 0, is_asked, "{t_min}");
     }
 }

@@ -86,6 +86,9 @@ fn claims_hold_on_both_sides_of_each_seam() {
         let (x, exact) = sum(x, 0.0);
         assert_claim(&atan(&x), &precision.atan(&exact), 1e-29);
     }
+    // At 45 degrees no quotient and no pi adds to the error.
+    let [high, _, error] = atan(&DoubleDouble::of(1.0)).parts();
+    assert!(high == std::f64::consts::FRAC_PI_4 && error < 1e-30, "{error:e}");
 }
 
 #[test]

@@ -245,3 +245,30 @@ fn a_lid_covers_what_its_conditions_hold_in() {
     let most = before_the_point.holds_within();
     assert!((most - 0.5).abs() < 1e-11 && is_covered(most) && !is_covered(most.next_up()), "{most}");
 }
+
+/// The line of a side may cross a part where the side itself does not. Of two faces with a common edge, along dy = -1/4, the lower one ends on
+/// the right at (1, -1/4), and its other side there runs on, as a line, through the part above the common edge.
+#[test]
+fn a_side_beyond_its_end_leaves_a_part_covered() {
+    let form = |constant: f64, x: f64, y: f64| Form { constant, x, y, xy: 0.0, error: 1e-15, bend: 0.0 };
+    let always = form(1.0, 0.0, 0.0);
+    let [end, left, up, down] = [[1.0, 0.0], [-9.0, 0.0], [9.0, 9.0], [9.0, -9.0]].map(|[x, y]| [x, y, 1.0]);
+    let (upper, lower) = (face([end, left, up]), face([end, down, left]));
+    let above = form(0.25, 0.0, 1.0);
+    // Through (1, -1/4) and (1/4, 1/4).
+    let side = form(5.0 / 12.0, -2.0 / 3.0, -1.0);
+    let occluder = |face, sides: [Form; 3]| {
+        let [a, b, c] = sides;
+        Occluder { face, turned_to_camera: true, hides: [a, b, c, always, always, always] }
+    };
+    let covered_by = |occluders| {
+        let hit = HitFace { is_front_seen: true, lands: [always; 5], occluders };
+        hit.is_covered(&Square { middle: [0.0; 2], half: 0.5 })
+    };
+    let above_it = || occluder(&upper, [above, always, always]);
+    assert!(covered_by(vec![above_it(), occluder(&lower, [side, always, above.negated()])]));
+    assert!(!covered_by(vec![above_it()]));
+    // A side through the lower face itself leaves a part open.
+    let nearer = form(0.0, -1.0, -0.5);
+    assert!(!covered_by(vec![above_it(), occluder(&lower, [nearer, always, above.negated()])]));
+}
