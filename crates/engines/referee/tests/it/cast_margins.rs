@@ -66,6 +66,17 @@ fn a_witness_is_close_behind_the_border() {
     let along = 0.25 / (1u64 << 40) as f64;
     assert_eq!(by.dx, -0.25 - along / 16.0);
     assert!((by.dy.abs() / along - 1.0).abs() < 1e-12, "{by:?}");
+    // A hole of three sides, whose side x = 1/4 is nearest and shorter than that. Beyond its far end no ray is in the hole; a 16th of
+    // the way along, and a 256th beyond, it is.
+    let short = 1.0 / (1u64 << 44) as f64;
+    let outer = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
+    let hole = [[0.25, -0.5 * short, 0.0], [0.25, 0.5 * short, 0.0], [0.25 + short, 0.0, 0.0]];
+    let vertices: Vec<_> = outer.into_iter().chain(hole).collect();
+    let around = [[0, 1, 4], [4, 1, 6], [6, 1, 2], [6, 2, 5], [5, 2, 3], [5, 3, 4], [4, 3, 0]];
+    let holed = mesh(&vertices, &around);
+    let margin = ExactCast::new(&holed).margins(&down(0.0, 0.0, 4.0), Sides::Both).surface;
+    let by = margin.witness.expect("a witness");
+    assert_eq!((by.dx.abs(), by.dy), (0.4375 * short, 0.25 + short / 256.0), "{by:?}");
 }
 
 #[test]

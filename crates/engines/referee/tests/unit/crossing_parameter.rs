@@ -1,5 +1,7 @@
 //! The quick t against exact arithmetic: it lies within its error, which is small; the same with fused operations and without.
 
+use std::cmp::Ordering;
+
 use super::super::tests::holds_quotient;
 use super::*;
 use crate::numbers::number::{Dyadic, Number};
@@ -65,18 +67,29 @@ fn what_is_out_of_bounds_or_uncertain_is_unknown() {
     assert!(crossing_parameter(origin, corners[1] - corners[0], corners).is_none());
 }
 
-/// The error covers the roundings of its own quotient, too. t is a whole number here, and w lies in the plane: r = 0, and what is left of
-/// the error is R / (|g| - G) with R = 256 u^2 W, which is no f64 number.
+/// The error is no less than (R + 2 u |r| + |r / g| G) / (|g| - G), whose own roundings it covers, too. Along the axis w is what rounding
+/// leaves of t; beside it t is a whole number, and w lies in the plane: r = 0.
 #[test]
 fn the_error_of_t_is_no_less_than_its_formula() {
     let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
-    for far in (1..50).map(f64::from) {
-        let t = crossing_parameter(far * DVec3::Z, DVec3::new(1.0, 0.0, -1.0), corners).expect("a crossing");
-        let [high, low, error] = t.parts();
-        assert_eq!((high, low), (far, 0.0));
-        let least = Dyadic::of(1.0).sub(&Dyadic::of(32.0 * f64::EPSILON));
-        let of_rest = 64.0 * f64::EPSILON * f64::EPSILON * far;
-        let missing = Dyadic::of(of_rest).sub(&Dyadic::of(error).mul(&least));
-        assert_ne!(missing.sign(), Some(std::cmp::Ordering::Greater), "{far}: {error}");
+    let of = Dyadic::of;
+    let u = 0.5 * f64::EPSILON;
+    let mut inexact = 0;
+    for (far, aside, down) in (1..50).flat_map(|k| [(f64::from(k), 0.0, 3.0), (f64::from(k), 1.0, 1.0)]) {
+        let t =
+            crossing_parameter(far * DVec3::Z, DVec3::new(aside, 0.0, -down), corners).expect("a crossing");
+        let [high, _, error] = t.parts();
+        // The first quotient is the nearest number. n = (0, 0, 1), so g = -down, and r is the last part of w.
+        let r = of(high).mul(&of(down)).sub(&of(far));
+        let r = if r.sign() == Some(Ordering::Less) { of(0.0).sub(&r) } else { r };
+        inexact += u32::from(r.sign() != Some(Ordering::Equal));
+        let largest = if aside == 0.0 { r.clone() } else { of(high * aside) };
+        let of_rest = of(256.0 * u * u).mul(&largest).add(&of(2.0 * u).mul(&r));
+        let of_approach = of(64.0 * u * down);
+        // Times |g|.
+        let asked = of(down).mul(&of_rest).add(&r.mul(&of_approach));
+        let given = of(error).mul(&of(down).sub(&of_approach)).mul(&of(down));
+        assert_ne!(asked.sub(&given).sign(), Some(Ordering::Greater), "{far}, {aside}: {error}");
     }
+    assert!(inexact > 20, "{inexact}");
 }

@@ -52,5 +52,8 @@ fn nothing_is_met_nearer_than_the_image_plane() {
         let nearer_than = |distance: f64| ray.meets_nearer_than(&ground, Interval::of(distance));
         assert_eq!(nearer_than(0.125), Kleene::FALSE);
         assert!(nearer_than(2.0).may_hold && nearer_than(2.0).may_fail);
+        // A back is not met at all.
+        let is_front = corners[2][2] > 0.0;
+        assert_eq!(ray.plane(&ground).is_met_as_asked, Kleene { may_hold: is_front, may_fail: true });
     }
 }

@@ -273,6 +273,15 @@ fn what_is_made_when_it_is_first_asked_for_may_be_asked_for_by_many_tasks_at_onc
     }
 }
 
+/// Numbers of f32 on either side, beyond what a number near 0 may be off by.
+#[test]
+fn numbers_below_and_above_have_room_for_rounding() {
+    for x in [0.0_f64, 1e-30, -1e-30, 1e-18, 0.1, -0.7, 1.0, 60_000.1] {
+        let room = (0.5 * f64::from(WIDENED)).max(x.abs() * f64::from(U));
+        assert!(f64::from(down(x)) <= x - room && f64::from(up(x)) >= x + room, "{x}");
+    }
+}
+
 #[test]
 fn a_walk_ends_where_its_visitor_says() {
     let (mesh, _) = moved_and_scaled(&lattice(), DVec3::ZERO, 1.0);
@@ -376,6 +385,9 @@ fn rays_that_follow_each_other_walk_one_by_one_and_have_the_same_answers() {
     let order: Vec<usize> = (0..rays.len()).map(|k| k * 607 % rays.len()).collect();
     let scattered: Vec<CastRay> = order.iter().map(|&k| rays[k]).collect();
     assert_eq!((how_many_together(&rays), how_many_together(&scattered)), (1, TOGETHER));
+    // Most are more than three of four.
+    let three_of_four = [&rays[..4], &rays[600..601]].concat();
+    assert_eq!((how_many_together(&three_of_four), how_many_together(&[])), (TOGETHER, TOGETHER));
     let of = |rays: &[CastRay]| {
         let mut all = vec![None; rays.len()];
         cast.first_meetings(rays, Sides::Both, |index, read, decided_by| {
@@ -426,4 +438,10 @@ fn rays_that_walk_together_take_turns() {
     let of_first = rays.looks.iter().filter(|&&place| place == 0).count();
     assert_eq!(2 * of_first, rays.looks.len());
     assert!(changes > 6, "{changes} of {:?}", rays.looks);
+    // The first ray here passes beside all, and another takes its place: that begins after the second one, a turn later.
+    let beside = CastRay::new(DVec3::new(-2.0, -2.0, 4.0), DVec3::X);
+    let beside = tree.ray(&beside).expect("a ray that is near");
+    let mut rays = InTurns { rays: vec![ray, ray, beside], looks: Vec::new() };
+    tree.walk_together(mesh.vertices(), &mut rays, 2);
+    assert_eq!(rays.looks.first(), Some(&1), "{:?}", rays.looks);
 }
