@@ -10,6 +10,7 @@ use raypencil_scene::{FaceId, Side, Triangles};
 use super::super::query_ray::QueryRay;
 use super::super::triangle::Triangle;
 use super::flat::{FlatFace, Linear, corner_of};
+use super::frame::is_cut;
 use super::hidden::{Hidden, WalkedFace};
 use super::looks::LOOKS;
 use super::region::{LazyLinear, least_size, triples};
@@ -434,8 +435,9 @@ fn what_touches_an_end_is_cut() {
     let ray = CastRay { t_min: 1.0, t_max: 4.0, ..CastRay::new(DVec3::ZERO, DVec3::Z) };
     let frame = Frame::new(&ray);
     let [first, last] = frame.ranges();
-    assert!(frame.is_cut([first, 2.0]) && frame.is_cut([2.0, last]) && frame.is_cut([0.0, 9.0]));
-    assert!(!frame.is_cut([first.next_up(), last.next_down()]));
+    let is_cut = |near: f64, far: f64| is_cut([near, far], frame.ranges());
+    assert!(is_cut(first, 2.0) && is_cut(2.0, last) && is_cut(0.0, 9.0));
+    assert!(!is_cut(first.next_up(), last.next_down()));
 }
 
 /// Sizes that intervals tell are not formed without rounding. Where the ray passes an edge itself, intervals do not tell.

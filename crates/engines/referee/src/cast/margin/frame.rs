@@ -172,17 +172,17 @@ impl<'r> Frame<'r> {
         [self.ray.t_min * length * (1.0 - slack), self.ray.t_max * length * (1.0 + slack)]
     }
 
-    /// Whether an end of the ray may cut what lies between these ranges.
-    pub(super) fn is_cut(&self, [near, far]: [f64; 2]) -> bool {
-        let [first, last] = self.ranges();
-        near <= first || far >= last
-    }
-
     /// Whether anything has asked for the exact frame.
     #[cfg(test)]
     pub(super) fn has_exact(&self) -> bool {
         self.exact.get().is_some()
     }
+}
+
+/// Whether an end of the ray may cut what lies between these ranges, by the ray's own [`ranges`](Frame::ranges).
+#[inline]
+pub(super) fn is_cut([near, far]: [f64; 2], [first, last]: [f64; 2]) -> bool {
+    near <= first || far >= last
 }
 
 /// A lower bound of the size of a displacement to a box that spans these intervals.

@@ -33,7 +33,7 @@ use raypencil_scene::{FaceId, Side, Sides};
 use super::super::triangle::Triangle;
 use super::faces::in_units;
 use super::flat::{FlatFace, corner_of};
-use super::frame::{Frame, FrameNumbers, least_size};
+use super::frame::{Frame, FrameNumbers, is_cut, least_size};
 use super::hidden::{Hidden, WalkedFace};
 use super::looks::take_note_of_a_look;
 use super::nearby::Nearby;
@@ -130,7 +130,7 @@ impl ExactCast<'_> {
                     if least_size(span) >= cap || near > last || far < first {
                         return false;
                     }
-                    let is_cut = frame.is_cut(span[2]);
+                    let is_cut = is_cut(span[2], [first, last]);
                     let shown = view.side_shown(node);
                     // Where all show one side there is no border; where all show backs that are not hit, nothing.
                     shown == 0 || (is_cut && (shown < 0 || view.sides() == Sides::Both))
@@ -206,7 +206,7 @@ impl ExactCast<'_> {
         let span_of = |a: DVec3, b: DVec3| frame.span(a.min(b), a.max(b));
         let [a, b, c] = face.corners;
         let whole = frame.span(a.min(b).min(c), a.max(b).max(c));
-        let is_cut = frame.is_cut(whole[2]);
+        let is_cut = is_cut(whole[2], [first, last]);
         for k in 0..3 {
             // Both faces show the same side: they continue one another, unless the edge is where an end cuts them.
             if !is_cut && self.continued(face.id, side, k, view).is_some() {
