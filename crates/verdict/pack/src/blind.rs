@@ -103,8 +103,27 @@ fn load(seed: u64) -> Result<LoadedScene, SceneIoError> {
 
 #[cfg(test)]
 mod tests {
+    use raypencil_files::{hex_digits, sha256};
+
     use super::*;
     use crate::bench::BENCH_BEAMS;
+
+    /// A blind pack has no scene but that of its seed: with another text for its seed it is refused.
+    #[test]
+    fn the_scene_of_a_seed_stays_what_it_is() {
+        let texts = (0..64).map(scene_toml).collect::<String>();
+        let digest = "fb553bc4b41a530ec7cb5cbe2c41b22082bfd5df27962344d678fdbe55e037fe";
+        assert_eq!(hex_digits(&sha256(texts.as_bytes())), digest);
+        // The vehicle stands on its ground, wherever that is.
+        for (offset, position) in
+            [("[0, 0, 0]", "[0, 0]"), ("[1e3, -2e3, 50]", "[1e3, -2e3]"), ("[1e6, 3e5, -2e3]", "[1e6, 3e5]")]
+        {
+            let there = |text: &String| text.contains(&format!("offset_m = {offset} }}"));
+            let of_offset: Vec<String> = (0..64).map(scene_toml).filter(there).collect();
+            let stands = |text: &String| text.contains(&format!("position_m = {position}\n"));
+            assert!(!of_offset.is_empty() && of_offset.iter().all(stands), "{offset}");
+        }
+    }
 
     #[test]
     fn every_seed_makes_a_scene_of_its_own() {

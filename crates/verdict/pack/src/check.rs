@@ -27,7 +27,7 @@ use crate::manifest::{
 use crate::provenance::{ProvenanceError, note};
 use crate::published::{PackIdentity, PublishedPack};
 use crate::rays::{rays_name, rays_sha256};
-use crate::verification::{DRAWN, MAX_ALL, Verification, drawn_places, seed_anew};
+use crate::verification::{DRAWN, Verification, drawn_places, seed_anew};
 
 /// Why a candidate could not be checked against a pack.
 #[derive(Debug, thiserror::Error)]
@@ -275,7 +275,7 @@ pub fn check_pack_by(
     let of =
         scene.sensors().filter_map(|sensor| scene.size(sensor)).map(|(w, h)| u64::from(w) * u64::from(h));
     let of: u64 = of.sum();
-    let is_drawn = matches!(share, Verification::Drawn { .. }) && !computed && !is_known && of > MAX_ALL;
+    let is_drawn = !computed && !is_known && share.draws_of(of);
     let seed = match share {
         Verification::Drawn { seed: Some(seed) } => seed,
         _ => seed_anew(),
@@ -456,3 +456,7 @@ fn read_answers<'s>(
     }
     Ok(GroundTruth::of_answers(scene, recorded.answers))
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/check.rs"]
+mod tests;

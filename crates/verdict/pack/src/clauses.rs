@@ -186,3 +186,37 @@ fn has_wrong_sum(honest: &RenderOutput, faulty: &RenderOutput) -> bool {
 fn is_wrong_pixel(Place { i, j, .. }: Place, honest: &RenderOutput, faulty: &RenderOutput) -> bool {
     honest.flux.iter().zip(&faulty.flux).any(|(right, stated)| differ(stated.at(i, j), right.at(i, j)))
 }
+
+#[cfg(test)]
+mod tests {
+    use raypencil_scene_io::{Overrides, load};
+
+    use super::*;
+
+    #[test]
+    fn a_count_takes_a_test_of_each_ray_against_each_face_for_each_fault() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../data/scenes/packs/hard.toml");
+        let scene = load(file, &Overrides::default()).expect("a scene").scene;
+        // Pixels, and pencils of two beams.
+        let rays = 24 * 18 + 2 * 48 * 2;
+        let faults: usize = Clause::ALL.iter().map(|clause| clause.faults().len()).sum();
+        assert!(faults >= Clause::ALL.len());
+        assert_eq!(tests(&scene), (rays * scene.mesh().faces().len() * faults) as f64);
+        assert!(can_count_clauses(&scene));
+    }
+
+    #[test]
+    fn a_wrong_sum_is_one_of_pencils_that_deliver_the_same() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../data/scenes/packs/hard.toml");
+        let scene = load(file, &Overrides::default()).expect("a scene").scene;
+        let honest = Naive { fault: None }.render(&scene, &Request::EVERYTHING);
+        assert!(has_wrong_sum(&honest, &honest.clone()));
+        let of = |change: &dyn Fn(&mut Returns)| {
+            let mut other = honest.clone();
+            change(&mut other.returns[1]);
+            has_wrong_sum(&honest, &other)
+        };
+        assert!(!of(&|returns| returns.flux.as_mut().expect("fluxes").cells_mut()[0] += 1.0));
+        assert!(!of(&|returns| returns.pixel = None));
+    }
+}

@@ -63,3 +63,20 @@ fn round_down_to_f32(margin: f64) -> f64 {
     let single = margin as f32;
     f64::from(if f64::from(single) > margin { single.next_down() } else { single })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_margin_is_rounded_to_the_largest_single_that_is_no_larger() {
+        // The single that is nearest to 0.1 is above it, and that to 0.7 below it.
+        assert!(f64::from(0.1_f32) > 0.1 && f64::from(0.7_f32) < 0.7);
+        assert_eq!(round_down_to_f32(0.1), f64::from(0.1_f32.next_down()));
+        assert_eq!(round_down_to_f32(0.7), f64::from(0.7_f32));
+        for exact in [0.0, 0.375, 1.0, f64::INFINITY] {
+            assert_eq!(round_down_to_f32(exact), exact);
+        }
+        assert_eq!(round_down_to_f32(f64::NAN).to_bits(), CANONICAL_NAN.to_bits());
+    }
+}

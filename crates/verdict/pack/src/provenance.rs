@@ -369,6 +369,29 @@ mod tests {
     }
 
     #[test]
+    fn texts_have_as_many_bytes_as_there_is_room_for() {
+        for (text, most) in [("P 1", MAX_TEXT_BYTES), (r#""s""#, MAX_TEXT_BYTES), ("ab", MAX_DIGEST_BYTES)] {
+            let of = |bytes: usize| {
+                let long = "x".repeat(bytes);
+                let long = if text.starts_with('"') { format!("\"{long}\"") } else { long };
+                assert_eq!(GOOD.matches(text).count(), 1, "{text}");
+                read(&GOOD.replace(text, &long))
+            };
+            assert!(of(most).is_ok_and(|note| note.is_some()), "{text}");
+            let message = of(most + 1).expect_err(text).to_string();
+            assert!(message.ends_with(&format!("{} bytes; expected at most {most}", most + 1)), "{message}");
+        }
+    }
+
+    #[test]
+    fn the_word_of_an_arithmetic_is_the_one_that_a_note_has() {
+        for word in ["f32", "f64"] {
+            let note = read(&GOOD.replace("f32", word)).expect("a note").expect("one that is there");
+            assert_eq!(note.arithmetic.expect("an arithmetic").word(), word);
+        }
+    }
+
+    #[test]
     fn invalid_notes_are_refused_with_the_place() {
         for (text, words) in [
             ("{", vec!["candidate.json", "JSON"]),

@@ -20,6 +20,13 @@ pub enum Verification {
     },
 }
 
+impl Verification {
+    /// Whether of so many answers only some are compared, which are drawn.
+    pub(crate) fn draws_of(self, answers: u64) -> bool {
+        matches!(self, Self::Drawn { .. }) && answers > MAX_ALL
+    }
+}
+
 /// Most answers that are all compared unasked. Tuned: some 2 s on two cores.
 pub const MAX_ALL: u64 = 50_000;
 
@@ -79,6 +86,13 @@ mod tests {
     fn as_many_are_drawn_as_find_one_forged_answer_in_a_thousand() {
         let missed = |count: u64| (0..count).fold(1.0, |product, _| product * 0.999);
         assert!(missed(DRAWN) < 1e-3 && missed(DRAWN - 2) > 1e-3);
+    }
+
+    #[test]
+    fn answers_are_drawn_of_larger_packs_alone_and_where_not_all_are_asked_for() {
+        let drawn = Verification::Drawn { seed: None };
+        assert_eq!([MAX_ALL, MAX_ALL + 1].map(|answers| drawn.draws_of(answers)), [false, true]);
+        assert!(!Verification::All.draws_of(MAX_ALL + 1));
     }
 
     #[test]

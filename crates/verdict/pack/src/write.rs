@@ -172,13 +172,7 @@ fn write_measured(
     }
 
     let sharpness = if is_counted && is_measured { measured(scene, progress)? } else { Vec::new() };
-    let blunt = sharpness.iter().filter(|(double, _)| !double.suffices());
-    let blunt: Vec<String> = blunt
-        .map(|(double, _)| {
-            let size = double.noticed.map_or("any size".into(), |size| format!("{size:e}"));
-            format!("{} ({size} {})", double.slack.key(), double.slack.unit().words())
-        })
-        .collect();
+    let blunt = blunt(&sharpness);
     if is_blind && !blunt.is_empty() {
         return Err(PackError::Blunt { name: subject.name.clone(), blunt });
     }
@@ -197,6 +191,16 @@ fn write_measured(
         sharpness: sharpness.iter().map(|(double, single)| ManifestSharpness::new(double, single)).collect(),
         ..manifest
     })
+}
+
+/// The tolerances that a bench does not notice soon enough in double precision, each with the size from which on it does.
+fn blunt(sharpness: &[(Sharpness, Sharpness)]) -> Vec<String> {
+    let blunt = sharpness.iter().filter(|(double, _)| !double.suffices());
+    let words = |(double, _): &(Sharpness, Sharpness)| {
+        let size = double.noticed.map_or("any size".into(), |size| format!("{size:e}"));
+        format!("{} ({size} {})", double.slack.key(), double.slack.unit().words())
+    };
+    blunt.map(words).collect()
 }
 
 /// The sharpness of a scene's bench in both precisions; nothing for a scene without one.
@@ -322,4 +326,40 @@ fn write_answers(
         found = of_next;
     }
     Ok(files)
+}
+
+#[cfg(test)]
+mod tests {
+    use raypencil_naive::Slack;
+
+    use super::*;
+
+    #[test]
+    fn a_bench_is_blunt_by_what_it_notices_later_than_it_has_to_in_double_precision() {
+        let of = |slack: Slack, noticed: Option<f64>| {
+            (Sharpness { slack, noticed, excused: false }, Sharpness { slack, noticed: None, excused: false })
+        };
+        // At the limits themselves a bench is sharp enough.
+        let sharp = [
+            of(Slack::ShadowStartsAway, Some(1e-9)),
+            of(Slack::ShiftRight, Some(1e-7)),
+            of(Slack::LandsLeft, Some(1e-7)),
+            of(Slack::DepthScaled, Some(1e-6)),
+        ];
+        assert_eq!(blunt(&sharp), Vec::<String>::new());
+        let later = [
+            of(Slack::ShadowStopsShort, Some(2e-9)),
+            sharp[1],
+            of(Slack::ShiftDown, Some(2e-7)),
+            of(Slack::LandsRight, Some(2e-7)),
+            of(Slack::RangeScaled, None),
+        ];
+        let words = [
+            "shadow-stops-short (2e-9 as a share)",
+            "shift-down (2e-7 of a cell)",
+            "lands-right (2e-7 of a pixel)",
+            "range-scaled (any size as a share)",
+        ];
+        assert_eq!(blunt(&later), words);
+    }
 }

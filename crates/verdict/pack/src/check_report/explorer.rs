@@ -121,3 +121,49 @@ fn describe(checked: &Checked, truth: &GroundTruth<'_>, place: Place) -> Describ
         ],
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use raypencil_judge::ListedDefect;
+    use raypencil_scene::Silent;
+
+    use super::*;
+    use crate::check_pack;
+
+    #[test]
+    fn the_page_opens_on_the_sensor_with_the_most_wrong_rays_and_on_what_is_wrong() {
+        let pack = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../data/packs/hard");
+        let mut checked = check_pack(&pack, &pack, None, &Silent).expect("a pack as it was written");
+        assert_eq!(opening(&checked), None);
+        // The camera, beam-0, beam-1 and beam-2. Of the two with the most the first is shown.
+        for (at, wrong) in [1, 3, 3, 2].into_iter().enumerate() {
+            let sensor = checked.check.sensors[at].sensor;
+            checked.check.sensors[at].by_class[Class::Defect as usize] = wrong;
+            checked.check.sensors[at].listed.push(ListedDefect {
+                place: Place { sensor, i: 5, j: 1 },
+                item: Quantity::Range.into(),
+                said: Vec::new(),
+                truth: String::new(),
+                difference: None,
+                difference_unit: "m",
+                ratio: None,
+                margin: None,
+                what: String::new(),
+            });
+        }
+        for (quantity, channel) in [
+            (Quantity::Hit, "range.T"),
+            (Quantity::Range, "range.T"),
+            (Quantity::Face, "face.I"),
+            (Quantity::Depth, "depth.Z"),
+            (Quantity::CosIncidence, "incidence.V"),
+            (Quantity::Visible, "visible.V"),
+            (Quantity::PencilFlux, "flux.V"),
+        ] {
+            checked.check.sensors[1].listed[0].item = quantity.into();
+            assert_eq!(opening(&checked), Some(format!("beam-0/5,1/{channel}/diff")));
+        }
+    }
+}

@@ -383,3 +383,27 @@ impl CheckFindings {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_group_tells_how_many_wrong_rays_it_does_not_list() {
+        let listed = |index: usize| {
+            WrongRay::of_list("rays/head", index, "range", &Said::default(), DefectLine::default())
+        };
+        let more = |defects: u64, undecided: u64, count: usize| {
+            let mut bundle = BundleFindings::not_given("rays/head".into(), 0);
+            bundle.by_class[Class::Defect as usize] = defects;
+            bundle.by_class[Class::Undecided as usize] = undecided;
+            bundle.listed = (0..count).map(listed).collect();
+            bundle.group().map(|group| (group.title, group.more))
+        };
+        let told = |title: &str, more: &str| Some((format!("rays/head: {title}"), more.to_string()));
+        assert_eq!(more(0, 0, 0), None);
+        assert_eq!(more(5, 2, 7), told("7 wrong", ""));
+        assert_eq!(more(5, 2, 6), told("7 wrong", "1 more is not listed here."));
+        assert_eq!(more(5, 2, 2), told("7 wrong", "5 more are not listed here."));
+    }
+}

@@ -65,3 +65,47 @@ pub(crate) fn listed_totals(check: &Check) -> Vec<(Item, ItemTally)> {
 pub fn items_not_given(check: &Check) -> Vec<(Item, &'static str)> {
     listed_totals(check).into_iter().filter_map(|(item, tally)| Some((item, not_given(&tally)?))).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use raypencil_files::Step;
+    use raypencil_judge::Quantity;
+    use raypencil_scene::{Place, Precision, SensorId};
+    use raypencil_scene_io::{Overrides, load};
+
+    use super::*;
+
+    #[test]
+    fn a_remark_on_a_coarse_storage_says_which_errors_it_hides() {
+        let scene = load("pyramids", &Overrides::default()).expect("a built-in scene").scene;
+        let of = |how: Storage| {
+            let mut recorded = Recorded::without_maps(Path::new("mine"), &scene, Precision::F64);
+            recorded.storage.insert((SensorId::Camera, Quantity::Range.into()), how);
+            coarse_storages(&recorded)
+        };
+        let millimetres = Storage::Steps(Step::new(0.001).expect("a step"));
+        let [remark] = of(millimetres).try_into().expect("one remark");
+        assert!(
+            remark
+                .ends_with(" and judged as such: range. Errors below half a step, 0.0005 m, cannot be seen")
+        );
+        assert_eq!(of(Storage::F16), [half_precision_note("range")]);
+        assert_eq!(of(Storage::F32), Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_ray_whose_type_cannot_hold_an_item_is_given_nevertheless() {
+        let unjudged = |count: u32| (0..count).map(|i| Place { sensor: SensorId::Camera, i, j: 0 }).collect();
+        let tally = |not_compared, of_type| ItemTally {
+            not_compared,
+            unjudged: unjudged(of_type),
+            ..ItemTally::default()
+        };
+        assert_eq!([tally(7, 2), tally(7, 0), tally(7, 7)].map(|tally| rays_not_given(&tally)), [5, 7, 0]);
+        assert_eq!(not_given(&tally(7, 0)), Some("not given"));
+        assert_eq!(not_given(&tally(7, 2)), Some("stored in a type that cannot hold it"));
+        assert_eq!(not_given(&tally(0, 0)), None);
+    }
+}

@@ -216,8 +216,12 @@ fn a_set_of_rays_that_hits_nothing_is_no_pass_beside_sensors_that_hit() {
     let (passes, word, ..) = with(vec![set("head", true)]);
     assert_eq!((passes, word.as_str()), (true, "agrees"));
     for sets in [vec![set("head", false)], vec![set("head", true), set("roof", false)]] {
-        let (passes, word, _, sign) = with(sets);
+        let (passes, word, headline, sign) = with(sets);
         assert_eq!((passes, word.as_str(), sign.as_str()), (false, "nothing_hit", "?"));
+        assert!(
+            headline.starts_with("No ray of this pack, or of one of its sets, hits anything"),
+            "{headline}"
+        );
     }
     // One that is not given is not asked.
     let (passes, word, ..) = with(vec![BundleFindings::not_given("rays/head".into(), 40)]);
@@ -244,12 +248,13 @@ fn the_verdict_says_of_a_pack_that_nobody_has_published_that_it_is_none() {
 fn what_is_declared_now_counts_more_than_a_note_which_still_says_the_rest() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let note = r#"{"format": 1, "program": "P", "arithmetic": "f32", "scale": 0.001, "miss": -1,
-        "channels": {"range.T": "far", "depth.Z": "deep", "face.I": "id"}}"#;
+        "channels": {"range.T": "far", "depth.Z": "deep", "face.I": "id"}, "no_faces": true}"#;
     std::fs::write(folder.path().join("candidate.json"), note).expect("a file");
     let channel = |text: &str| text.parse().expect("a channel");
     let with = |declared: Declarations| declared.with_note_of(folder.path()).expect("a note");
     let noted = with(Declarations::default());
     assert_eq!((noted.precision(), noted.scale, noted.miss), (Precision::F32, Some(0.001), Some(-1.0)));
+    assert!(noted.ignores_faces);
     let all = ["range.T=far", "depth.Z=deep", "face.I=id"].map(channel);
     assert_eq!(noted.channels, all);
     let declared = Declarations {

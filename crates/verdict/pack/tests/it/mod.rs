@@ -2,4 +2,5 @@
 
 mod check;
 mod half;
+mod input;
 mod manifest;
