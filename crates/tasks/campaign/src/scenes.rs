@@ -75,3 +75,26 @@ pub(crate) fn lattice_scene(campaign: &Campaign, terrain: u64) -> Scene {
     let beams = if is_beam { vec![Mounted { scene_from_sensor: pose, sensor: beam }] } else { Vec::new() };
     scene(mesh, at_origin(camera), beams)
 }
+
+#[cfg(test)]
+mod tests {
+    use raypencil_files::{hex_digits, sha256};
+    use raypencil_scene_io::scene_sha256;
+
+    use super::*;
+
+    /// The text of a case has all of its numbers, and takes no ground of a million faces to write.
+    #[test]
+    fn the_scenes_of_a_seed_stay_what_they_are() {
+        let campaign = Campaign::new(5, 64);
+        let cases: String = (0..64).map(|terrain| format!("{:?}\n", case(&campaign, terrain))).collect();
+        let digest = "6c93486920e7908820c4bc2e46a5884fb41b9f88dd7ace560f1d7c5dce6ed8d7";
+        assert_eq!(hex_digits(&sha256(cases.as_bytes())), digest);
+        // Cameras and beams, with and without vertices in front of the sensor projection plane.
+        let lattices: Vec<Scene> = (0..8).map(|terrain| lattice_scene(&campaign, terrain)).collect();
+        assert!([0, 1].iter().all(|beams| lattices.iter().any(|scene| scene.beams().len() == *beams)));
+        let digests: Vec<String> = lattices.iter().map(scene_sha256).collect();
+        let digest = "a05ff612d1b8f771b449d2b87bb66d8b1ac5343ad86ea3944f0defc7c0051482";
+        assert_eq!(hex_digits(&sha256(digests.join(" ").as_bytes())), digest);
+    }
+}

@@ -64,8 +64,7 @@ pub fn terrain(
     let tracer = contender("tracer").expect("the name of a renderer");
     for (part, scene, share) in parts {
         let record = compare_renderers(part, scene, share, &tracer);
-        let is_wrong = record.of_class(Class::Defect) + record.of_class(Class::Undecided) > 0;
-        if let (true, Some(folder)) = (is_wrong, found) {
+        if let (false, Some(folder)) = (record.wrong.is_empty(), found) {
             write_wrong_scene(
                 &folder.join("wrong"),
                 &format!("terrain-{number:06}-{}", part.word()),

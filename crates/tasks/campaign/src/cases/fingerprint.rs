@@ -47,6 +47,7 @@ mod tests {
         for (at, one) in samples.iter().enumerate() {
             assert!(!samples[..at].contains(one), "two samples are the same scene");
         }
-        assert_eq!(fingerprint().len(), 64);
+        // With other scenes the records of a campaign are of another program, and its terrains are run again.
+        assert_eq!(fingerprint(), "3efe7f87f5f108bb066d6a7b665c9d95ec1bae74c4fbca74a90b0978279c9f7e");
     }
 }

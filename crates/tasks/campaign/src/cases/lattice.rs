@@ -252,3 +252,81 @@ fn is_between(q: &[i128; 3], a: &[i128; 3], b: &[i128; 3]) -> bool {
     let n = cross(a, b);
     dot(&n, q) == 0 && dot(&n, &cross(a, q)) >= 0 && dot(&n, &cross(q, b)) >= 0
 }
+
+#[cfg(test)]
+mod tests {
+    use raypencil_referee::{Format, Referee};
+    use raypencil_scene::SensorId;
+    use raypencil_scene_io::scene_sha256;
+
+    use super::*;
+    use crate::cases::at_origin;
+
+    /// A camera and a beam, each before a lattice of which a part lies in front of the sensor projection plane.
+    fn cut() -> [(SensorId, Sensor, Lattice); 2] {
+        let camera = Sensor::Camera(rig::camera(9, 9, 1.0 / 1024.0, 1.0 / 16.0));
+        let beam = Sensor::Beam(rig::beam(9, 7, [1.0 / 1024.0, 1.0 / 256.0], 1.0 / 16.0));
+        [(SensorId::Camera, camera, 1), (SensorId::Beam(0), beam, 0)].map(|(id, sensor, rings)| {
+            (id, sensor, Lattice::before(sensor, rings, 3, &[0.5, 0.75, 1.0, 1.5, 64.0]))
+        })
+    }
+
+    #[test]
+    fn the_fate_of_each_ray_and_the_range_of_each_vertex_are_the_referee_s() {
+        for (id, sensor, lattice) in cut() {
+            let (mesh, moved) = lattice.mesh(&Pose::IDENTITY);
+            assert_eq!(moved, 0.0);
+            let scene = match sensor {
+                Sensor::Camera(camera) => scene(mesh, at_origin(camera), Vec::new()),
+                Sensor::Beam(beam) => {
+                    scene(mesh, at_origin(rig::camera(1, 1, 0.01, 0.01)), vec![at_origin(beam)])
+                }
+            };
+            let referee = Referee::new(&scene);
+            let (width, height) = sensor.size();
+            let mut fates = [0; 3];
+            for (i, j) in (0..height).flat_map(|j| (0..width).map(move |i| (i, j))) {
+                let hit = referee.values(id, i, j).map(|hit| hit.in_format(Format::Double));
+                let fate = lattice.fate(i, j);
+                fates[fate as usize] += 1;
+                if fate != ExpectedHit::Unknown {
+                    assert_eq!(hit.is_some(), fate == ExpectedHit::Hit, "{id} {i},{j}");
+                }
+                let on_vertex = i.is_multiple_of(2) && j.is_multiple_of(2);
+                assert_eq!(lattice.t_at(i, j).is_some(), on_vertex);
+                if let Some((t, hit)) = lattice.t_at(i, j).zip(hit) {
+                    let [_, q] = sensor.ray(i.into(), j.into());
+                    assert!((hit.range - t * q.length()).abs() <= 1e-15 * hit.range, "{id} {i},{j}");
+                }
+            }
+            let [hits, misses, unknown] = fates;
+            assert!(hits > 10 && misses > 10 && (unknown > 0) == (id != SensorId::Camera), "{fates:?}");
+        }
+    }
+
+    #[test]
+    fn a_ray_passes_beside_a_diagonal_of_a_beam_unless_its_ends_have_the_same_t() {
+        let [(_, camera, before_camera), (_, beam, before_beam)] = cut();
+        let (width, height) = camera.size();
+        assert_eq!(before_camera.count_rays_on_edges(), u64::from(width * height));
+        let (width, height) = beam.size();
+        let mut expected = 0;
+        for (i, j) in (0..height).flat_map(|j| (0..width).map(move |i| (i, j))) {
+            let cell = (j / 2 * width.div_ceil(2) + i / 2) as usize;
+            let t = |di: u32, dj: u32| before_beam.t_at(i - 1 + 2 * di, j - 1 + 2 * dj);
+            expected += u64::from(match (i % 2, j % 2) {
+                (1, 1) if before_beam.falling[cell] => t(0, 0) == t(1, 1),
+                (1, 1) => t(0, 1) == t(1, 0),
+                _ => true,
+            });
+        }
+        assert!(expected < u64::from(width * height) && expected > u64::from(width * height) * 3 / 4);
+        assert_eq!(before_beam.count_rays_on_edges(), expected);
+    }
+
+    #[test]
+    fn a_turned_lattice_stays_what_it_is() {
+        let digest = "0835e1a128346ceea27b99e5399682017d29baee5250e6fafcac4c9ec9dc4df1";
+        assert_eq!(scene_sha256(&turned(5)), digest);
+    }
+}

@@ -75,5 +75,15 @@ mod tests {
         assert_eq!([0, 1, 2].map(|index| hash(0, index)), reference);
         let mut random = SplitMix64::new(0);
         assert_eq!([(); 2].map(|()| random.next_u64()), reference[1..]);
+        // As numbers from -1 to 1: whole numbers below 2^64 in units of 2^63, but for their last 11 bits.
+        let unit = |whole: u64| whole as f64 / (1_u64 << 63) as f64 - 1.0;
+        for (index, whole) in (0..).zip(reference) {
+            assert!((hash_unit(0, index) - unit(whole)).abs() < 1e-15, "{index}");
+        }
+        // The signs of the outputs after those: the last bit tells.
+        let signs = [(); 8].map(|()| random.sign());
+        let mut again = SplitMix64::new(0);
+        assert_eq!([(); 2].map(|()| again.next_u64()), reference[1..]);
+        assert_eq!(signs, [(); 8].map(|()| 1.0 - 2.0 * (again.next_u64() & 1) as f64));
     }
 }

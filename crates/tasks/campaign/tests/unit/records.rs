@@ -306,6 +306,13 @@ fn counts_at_their_limits_are_taken() {
     assert!(with(vec![reason(3, 0, 0)]).unwrap_err().contains("a reason of 3 mistakes"));
     assert!(with(vec![reason(1, 3, 0)]).unwrap_err().contains("explains 3 of 2 rays"));
     assert!(with(vec![reason(1, 0, 10)]).unwrap_err().contains("breaks 10 of 9"));
+    // Rays of a reason, and the length of its texts.
+    let of_rays = |right: u64| with(vec![ReasonRecord { right, ..reason(1, 2, 9) }]);
+    assert_eq!(of_rays(most), Ok(()));
+    assert!(of_rays(most + 1).unwrap_err().contains("a reason that explains 2 of 2 rays"));
+    let of_text = |bytes: usize| with(vec![ReasonRecord { clause: "x".repeat(bytes), ..reason(1, 2, 9) }]);
+    assert_eq!(of_text(1 << 14), Ok(()));
+    assert!(of_text((1 << 14) + 1).unwrap_err().contains("a text of 16385 bytes"));
     // As many terrains as a campaign may have, and the last of them.
     let large = Campaign::new(5, crate::plan::MAX_TERRAINS);
     assert!(large.clone().checked(None).is_ok());
