@@ -71,6 +71,9 @@ mod visibility;
 mod whole;
 
 #[cfg(test)]
+#[path = "../tests/common/small_camera.rs"]
+mod small_camera;
+#[cfg(test)]
 #[path = "../tests/common/soup.rs"]
 mod soup;
 #[cfg(test)]

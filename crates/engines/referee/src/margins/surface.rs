@@ -270,13 +270,12 @@ mod tests {
     use std::sync::Arc;
 
     use glam::DVec3;
-    use raypencil_scene::{
-        Atmosphere, Camera, FluxModel, Lens, Material, Mesh, Mounted, Pose, Scene, SensorId,
-    };
+    use raypencil_scene::{Atmosphere, FluxModel, Material, Mesh, Mounted, Pose, Scene, SensorId};
 
     use super::*;
     use crate::hits::verdict::Referee;
     use crate::rays::ray::{Aim, MountedSensor};
+    use crate::small_camera::small_camera;
 
     /// A face 2 m ahead that ends `cells` cells to the right of the ray; a cell is 1/4 m.
     fn jump(cells: f32, lo: f64) -> Option<[f64; 2]> {
@@ -285,17 +284,7 @@ mod tests {
         let material = Material { name: "ground".into(), reflectivity: 0.25 };
         let mesh = Mesh::new(DVec3::ZERO, vertices, vec![[0, 1, 2]], vec![0], vec![material]);
         let mesh = mesh.expect("a mesh");
-        let camera = Camera {
-            width: 9,
-            height: 9,
-            pixel_pitch: [0.0625; 2],
-            focal_length: 0.5,
-            principal_point: [4.5; 2],
-            aperture: 0.01,
-            lens: Lens::CLEAR,
-            max_range: 20.0,
-        };
-        let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera };
+        let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: small_camera() };
         let air = Atmosphere { attenuation: 0.0 };
         let scene = Scene::new(Arc::new(mesh), camera, vec![], air, FluxModel::Radiometric).expect("a scene");
         let referee = Referee::new(&scene);

@@ -1,8 +1,9 @@
 //! Conditions of the paper's image, by hand.
 
-use raypencil_scene::{Camera, FaceId, Lens, Mounted, Pose};
+use raypencil_scene::{FaceId, Mounted, Pose};
 
 use super::*;
+use crate::small_camera::small_camera;
 
 fn at(x: f64, y: f64) -> Projected {
     Projected { x: Interval::of(x), y: Interval::of(y) }
@@ -31,17 +32,7 @@ fn a_triangle_contains_its_corners() {
 /// is met from 1/4 m on, but the image plane is 1/2 m away, and nothing before it counts, whichever side of the ground is the front.
 #[test]
 fn nothing_is_met_nearer_than_the_image_plane() {
-    let camera = Camera {
-        width: 9,
-        height: 9,
-        pixel_pitch: [0.0625; 2],
-        focal_length: 0.5,
-        principal_point: [4.5; 2],
-        aperture: 0.01,
-        lens: Lens::CLEAR,
-        max_range: 20.0,
-    };
-    let sensor = MountedSensor::camera(Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera });
+    let sensor = MountedSensor::camera(Mounted { scene_from_sensor: Pose::IDENTITY, sensor: small_camera() });
     let tolerance = Tolerance { lateral: 1.0, depth: 0.0, position: 0.0, unit_roundoff: 0.0 };
     let with = Approximations { beam_edges: false, skip_rules: false };
     let ray = PaperRay::new(&sensor, Aim { i: 4, j: 4, dx: 0.0, dy: 0.0 }, with, tolerance);

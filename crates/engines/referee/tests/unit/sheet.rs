@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use raypencil_scene::{Atmosphere, Camera, FluxModel, Lens, Material, Mesh, Mounted, Pose, Scene, SensorId};
+use raypencil_scene::{Atmosphere, FluxModel, Material, Mesh, Mounted, Pose, Scene, SensorId};
 
 use super::*;
 use crate::hits::verdict::Referee;
 use crate::rays::ray::{Aim, MountedSensor};
+use crate::small_camera::small_camera;
 
 type Corners = [[f32; 3]; 3];
 
@@ -18,17 +19,7 @@ fn around<T>(faces: &[Corners], says: impl Fn(Neighbourhood<'_>) -> T) -> T {
     let material = Material { name: "ground".into(), reflectivity: 0.25 };
     let mesh =
         Mesh::new(DVec3::ZERO, vertices, indices, vec![0; faces.len()], vec![material]).expect("a mesh");
-    let camera = Camera {
-        width: 9,
-        height: 9,
-        pixel_pitch: [0.0625; 2],
-        focal_length: 0.5,
-        principal_point: [4.5; 2],
-        aperture: 0.01,
-        lens: Lens::CLEAR,
-        max_range: 20.0,
-    };
-    let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: camera };
+    let camera = Mounted { scene_from_sensor: Pose::IDENTITY, sensor: small_camera() };
     let air = Atmosphere { attenuation: 0.0 };
     let scene = Scene::new(Arc::new(mesh), camera, vec![], air, FluxModel::Radiometric).expect("a scene");
     let referee = Referee::new(&scene);

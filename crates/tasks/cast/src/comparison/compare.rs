@@ -403,11 +403,6 @@ impl Judge<'_> {
         let exact = read.clone().map(|faces| value_of(faces[0]));
         // A face that only a ray beside this one meets: its distance there is that of its plane, up to the bound.
         let beside = || {
-            // Most distances that are wrong are those of nothing around.
-            let is_near = |face: &FaceId| self.is_plane_at(index, ray, *face, distance, is_t);
-            if !self.faces_near(ray).iter().any(is_near) {
-                return None;
-            }
             let most = self.exact.lateral_error(ray, self.precision);
             let around = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
             around.into_iter().find_map(|by: [f64; 2]| {
