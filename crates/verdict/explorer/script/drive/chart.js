@@ -52,6 +52,8 @@ class TimeChart {
     for (const name of ['pointerup', 'pointercancel']) {
       this.svg.addEventListener(name, () => { this.isHeld = false; });
     }
+    // The numbers stand there at once; the picture follows when its width is known.
+    this.show();
     new ResizeObserver(() => this.draw()).observe(this.element);
   }
 
