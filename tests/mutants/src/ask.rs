@@ -19,6 +19,30 @@ const MAX_MEMORY_KIB: u64 = 8 << 20;
 /// Largest file of a run, in KiB.
 const MAX_FILE_KIB: u64 = 1 << 20;
 
+/// The clock of a run looks this often.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// The time of a run. If a user stops this program together with the tests (SIGSTOP), the time of the stop does not count: of
+/// the time between two looks at the clock at most twice the usual is taken.
+struct Clock {
+    looked: Instant,
+    passed: Duration,
+}
+
+impl Clock {
+    fn start() -> Self {
+        Self { looked: Instant::now(), passed: Duration::ZERO }
+    }
+
+    /// The time so far. To be asked about every [`LOOK`].
+    fn passed(&mut self) -> Duration {
+        let now = Instant::now();
+        self.passed += now.duration_since(self.looked).min(2 * LOOK);
+        self.looked = now;
+        self.passed
+    }
+}
+
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Ended {
@@ -91,20 +115,21 @@ impl Setting<'_> {
             }
         });
 
-        let start = Instant::now();
+        let mut clock = Clock::start();
         let mut seconds = BTreeMap::new();
         let mut begun: BTreeSet<String> = BTreeSet::new();
         let in_flight = |begun: &BTreeSet<String>| begun.first().cloned().unwrap_or_else(|| "no test".into());
         let ended = loop {
-            let left = limit.saturating_sub(start.elapsed());
-            let line = match lines.recv_timeout(left) {
+            if clock.passed() > limit {
+                break Ended::TooLong(in_flight(&begun));
+            }
+            let line = match lines.recv_timeout(LOOK) {
                 Ok(line) => line,
-                Err(mpsc::RecvTimeoutError::Timeout) => break Ended::TooLong(in_flight(&begun)),
+                Err(mpsc::RecvTimeoutError::Timeout) => continue,
                 Err(mpsc::RecvTimeoutError::Disconnected) => match child.try_wait()? {
                     Some(status) if status.success() => break Ended::Passed,
                     Some(_) => break Ended::Failed(in_flight(&begun)),
                     // It has closed its output, and has not ended yet.
-                    None if start.elapsed() > limit => break Ended::TooLong(in_flight(&begun)),
                     None => {
                         std::thread::sleep(Duration::from_millis(5));
                         continue;
@@ -136,5 +161,20 @@ impl Setting<'_> {
         }
         child.wait()?;
         Ok(Run { ended, seconds })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stop_does_not_count() {
+        let mut clock = Clock { looked: Instant::now() - 50 * LOOK, passed: 3 * LOOK };
+        assert_eq!(clock.passed(), 5 * LOOK);
+        // Between two looks at the usual time all counts.
+        clock.looked = Instant::now() - LOOK;
+        let passed = clock.passed();
+        assert!((6 * LOOK..7 * LOOK).contains(&passed), "{passed:?}");
     }
 }
