@@ -62,7 +62,8 @@ fn the_pointer_reads_the_numbers_of_the_files_at_any_zoom() {
                 "(r => [r.left, r.top, r.width, r.height])({}.getBoundingClientRect())",
                 canvas("camera")
             );
-            for _ in 0..10 {
+            // A picture that is turned, or off by a cell, shows at every place that has a hit.
+            for _ in 0..4 {
                 let (across, down) = (next(), next());
                 // Under load the page may still move below the pointer: a hand would point again, at where the picture is then.
                 let point = |_| {
@@ -101,8 +102,8 @@ fn the_pointer_reads_the_numbers_of_the_files_at_any_zoom() {
             }
         }
     }
-    assert_eq!(hits + misses, 150);
-    assert!(hits > 75 && misses > 5, "{hits} cells with a hit, {misses} without");
+    assert_eq!(hits + misses, 60);
+    assert!(hits > 30 && misses > 2, "{hits} cells with a hit, {misses} without");
     page.assert_quiet();
 }
 
