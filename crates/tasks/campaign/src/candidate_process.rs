@@ -191,4 +191,13 @@ mod tests {
             assert!(!pids.iter().any(|pid| lives(pid)), "{line}: {said}");
         }
     }
+
+    /// It left the process group, and keeps the stream of what the command says.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn who_left_the_group_is_not_waited_for() {
+        let start = Instant::now();
+        assert_eq!(ran("setsid sleep 20 & exit 0", LONG).0, Some(0));
+        assert!(start.elapsed() < Duration::from_secs(10), "{:?}", start.elapsed());
+    }
 }

@@ -208,3 +208,7 @@ pub(crate) fn checked_record(
 #[cfg(test)]
 #[path = "../tests/unit/records.rs"]
 mod tests;
+
+#[cfg(test)]
+#[path = "../tests/unit/left.rs"]
+mod left_tests;

@@ -125,6 +125,16 @@ mod tests {
     use raypencil_terrain::RandomGround;
 
     use super::*;
+    use crate::cases::mesh;
+
+    #[test]
+    fn a_face_without_area_is_no_target() {
+        // Three corners on a line, and one corner that is there twice.
+        for last in [[2.0, 4.0, 3.0], [1.0, 2.0, 3.0]] {
+            let thin = mesh(vec![[0.0, 0.0, 3.0], [1.0, 2.0, 3.0], last], vec![[0, 1, 2]]);
+            assert_eq!(scene(&thin, 5, MAX_BEAMS).beams().len(), 0);
+        }
+    }
 
     #[test]
     fn aimed_rays_are_close_to_other_answers() {

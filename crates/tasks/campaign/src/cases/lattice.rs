@@ -325,6 +325,46 @@ mod tests {
     }
 
     #[test]
+    fn every_ray_hits_a_lattice_beyond_the_projection_plane_and_none_one_before_it() {
+        for (id, sensor, _) in cut() {
+            let (width, height) = sensor.size();
+            for (t, expected) in
+                [(1.0, ExpectedHit::Hit), (64.0, ExpectedHit::Hit), (0.75, ExpectedHit::Miss)]
+            {
+                let lattice = Lattice::before(sensor, 1, 3, &[t]);
+                for (i, j) in (0..height).flat_map(|j| (0..width).map(move |i| (i, j))) {
+                    assert_eq!(lattice.fate(i, j), expected, "{id} {i},{j} at {t}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_turn_by_a_quarter_keeps_every_coordinate_exact() {
+        let [(_, camera, lattice), _] = cut();
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        let pose = Pose { position: DVec3::ZERO, rotation: DQuat::from_xyzw(0.0, 0.0, half, half) };
+        // Products with this quaternion are rounded, and 0 would be some 1e-17 m.
+        let (turned, _) = lattice.mesh(&pose);
+        let (plain, _) = lattice.mesh(&Pose::IDENTITY);
+        let expected: Vec<[f32; 3]> = plain.vertices().iter().map(|&[x, y, z]| [-y, x, z]).collect();
+        assert_eq!(turned.vertices(), expected);
+        assert!(expected.iter().any(|vertex| vertex[0] == 0.0), "{camera:?}");
+    }
+
+    #[test]
+    fn a_half_line_meets_a_segment_at_its_ends_too_and_never_behind_its_origin() {
+        let meets = |q: [i128; 3]| is_between(&q, &[2, 0, 4], &[-2, 0, 4]);
+        for q in [[0, 0, 1], [1, 0, 2], [-1, 0, 2], [1, 0, 3]] {
+            assert!(meets(q), "{q:?}");
+        }
+        // Beyond either end, beside the plane, and behind.
+        for q in [[3, 0, 4], [-3, 0, 4], [0, 1, 9], [0, 0, -1], [-1, 0, -2]] {
+            assert!(!meets(q), "{q:?}");
+        }
+    }
+
+    #[test]
     fn a_turned_lattice_stays_what_it_is() {
         let digest = "0835e1a128346ceea27b99e5399682017d29baee5250e6fafcac4c9ec9dc4df1";
         assert_eq!(scene_sha256(&turned(5)), digest);

@@ -98,4 +98,5 @@ fn commands_that_show_a_ray_again_name_the_scenes_and_their_rig() {
     let page = document.page().unwrap();
     let again = format!("raypencil campaign replay {options} --seed 7 --terrain 0 --part own -o DIR</code>");
     assert!(page.contains(&again), "{page}");
+    assert!(page.contains("3 terrains of one's own: a.stl, b.tif, c.TIFF, 3 faces in all"), "{page}");
 }

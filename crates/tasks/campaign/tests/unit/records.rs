@@ -313,6 +313,13 @@ fn counts_at_their_limits_are_taken() {
     let of_text = |bytes: usize| with(vec![ReasonRecord { clause: "x".repeat(bytes), ..reason(1, 2, 9) }]);
     assert_eq!(of_text(1 << 14), Ok(()));
     assert!(of_text((1 << 14) + 1).unwrap_err().contains("a text of 16385 bytes"));
+    // A scene without a wrong ray has no reason.
+    let mut right = record(0);
+    let part = &mut right.parts[0];
+    (part.by_class, part.wrong) = ([52, 3, 2, 3, 0, 0], Vec::new());
+    assert_eq!(check_record(&right, &campaign()), Ok(()));
+    right.parts[0].reasons = vec![reason(1, 2, 9)];
+    assert!(check_record(&right, &campaign()).unwrap_err().contains("1 reasons for 0 wrong rays"));
     // As many terrains as a campaign may have, and the last of them.
     let large = Campaign::new(5, crate::plan::MAX_TERRAINS);
     assert!(large.clone().checked(None).is_ok());
@@ -397,27 +404,6 @@ fn a_result_by_the_name_of_another_shard_is_not_that_shard_s() {
     assert!(has_result(&campaign(), first, folder.path()) && has_result(&campaign(), second, folder.path()));
     std::fs::copy(result_file(folder.path(), first), result_file(folder.path(), second)).unwrap();
     assert!(!has_result(&campaign(), second, folder.path()));
-}
-
-#[test]
-fn what_a_terrain_left_is_removed_where_it_is_as_it_was_and_nowhere_else() {
-    let parent = TempDir::new().unwrap();
-    let folder = parent.path().join("campaign");
-    let names =
-        ["wrong/terrain-000003-own/a", "wrong/changed", "misses/b", "terrains/c", "other/d", "../outside"];
-    let mut left = Vec::new();
-    for name in names {
-        let path = folder.join(name);
-        create_folder(path.parent().unwrap()).unwrap();
-        std::fs::write(&path, name).unwrap();
-        left.push(InputFile { name: name.into(), sha256: file_sha256_hex(&path).unwrap().1 });
-    }
-    std::fs::write(folder.join("wrong/changed"), "by hand").unwrap();
-    remove_left(&folder, Some(Made { left, ..this() }));
-    let is_there = names.map(|name| folder.join(name).exists());
-    assert_eq!(is_there, [false, true, false, true, true, true]);
-    // Folders that became empty go too.
-    assert!(!folder.join("misses").exists() && !folder.join("wrong/terrain-000003-own").exists());
 }
 
 #[test]
