@@ -168,7 +168,6 @@ fn split(text: &str) -> Vec<&str> {
     for (at, letter) in text.char_indices() {
         match (quote, letter) {
             (Some(open), _) if letter == open => quote = None,
-            (Some(_), _) => {}
             (None, '"' | '\'') => quote = Some(letter),
             (None, '[' | '{') => depth += 1,
             (None, ']' | '}') => depth -= 1,
@@ -249,6 +248,7 @@ mod tests {
     fn ranges_have_both_ends_and_the_decimals_of_their_numbers() {
         assert_eq!(values("a=0.1:0.5:0.1"), ["0.1", "0.2", "0.3", "0.4", "0.5"]);
         assert_eq!(values("a=3:-3:-3"), ["3", "0", "-3"]);
+        assert_eq!(values("a=-2:1:1"), ["-2", "-1", "0", "1"]);
         assert_eq!(values("a=1:2:0.25, 7"), ["1.00", "1.25", "1.50", "1.75", "2.00", "7"]);
         assert_eq!(values("a=5:5:1"), ["5"]);
         assert_eq!(values("a=1e-3:3e-3:1e-3"), ["1e-3", "2e-3", "3e-3"]);
@@ -293,6 +293,8 @@ mod tests {
     fn commas_within_brackets_and_quotes_do_not_separate() {
         assert_eq!(values("a=[1, 2],[3, 4]"), ["[1, 2]", "[3, 4]"]);
         assert_eq!(values("a=\"x,y\",z"), ["\"x,y\"", "z"]);
+        // Brackets and the other quotes within quotes are letters.
+        assert_eq!(values("a=\"[\",\"it's\",']'"), ["\"[\"", "\"it's\"", "']'"]);
         assert_eq!(values("a={ b = 1, c = 2 }"), ["{ b = 1, c = 2 }"]);
     }
 

@@ -242,6 +242,24 @@ mod tests {
     }
 
     #[test]
+    fn a_changed_record_is_taken_once_it_is_sealed_anew() {
+        use crate::records::{outcome_from_bytes, sealed};
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("runs")).unwrap();
+        let sweep = Sweep::new("pyramids", Vec::new(), Task::Render, vec!["scanline".into()], false).unwrap();
+        let outcome = |hits: u64| results(&[("camera.hits", json!(hits))]);
+        let record = Record { program: "a".into(), inputs: vec![], left: vec![], outcome: outcome(4711) };
+        write_record(folder.path(), &sweep, 0, &record).unwrap();
+        let text = std::fs::read_to_string(record_file(folder.path(), &sweep, 0)).unwrap();
+        let read = |text: &str| outcome_from_bytes(text.as_bytes(), &sweep, 0);
+        assert_eq!(read(&text), Some(outcome(4711)));
+        let changed = text.replace("4711", "4712");
+        assert_eq!(read(&changed), None);
+        assert_eq!(read(&sealed(changed.as_bytes()).unwrap()), Some(outcome(4712)));
+        assert_eq!(sealed(b"{}"), None);
+    }
+
+    #[test]
     fn what_a_run_may_just_give_is_taken() {
         let most: Vec<(String, Value)> = (0..MAX_RESULTS).map(|k| (format!("k{k}"), json!(k))).collect();
         for outcome in [

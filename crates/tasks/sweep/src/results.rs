@@ -86,8 +86,9 @@ pub(crate) fn drive_results(summary: &Value) -> Vec<Named> {
     results
 }
 
+/// A part of a whole. Of nothing there is no share: what is divided by 0 is no number of JSON, and becomes null.
 fn share(part: f64, whole: f64) -> Value {
-    if whole > 0.0 { json!(part / whole) } else { Value::Null }
+    json!(part / whole)
 }
 
 /// Results of a rendering: what each sensor hits, and the light of each beam that the camera sees.
@@ -188,5 +189,9 @@ mod tests {
         assert!(results.iter().all(|(name, _)| !name.contains("seconds") && !name.starts_with("format")));
         // A ground without obstacles has no share of them.
         assert_eq!(drive_results(&json!({ "truth": { "with_obstacle": 0 } }))[1].1, Value::Null);
+        assert_eq!(
+            [share(0.0, 0.0), share(1.0, 0.0), share(0.0, 2.0)],
+            [Value::Null, Value::Null, json!(0.0)]
+        );
     }
 }

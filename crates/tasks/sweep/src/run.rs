@@ -205,3 +205,22 @@ pub(crate) fn plan_from_bytes(text: &[u8], file: &Path) -> Result<Sweep, SweepEr
     let plan: Sweep = serde_json::from_slice(text).map_err(|error| refused(error.to_string()))?;
     plan.checked().map_err(|error| refused(error.to_string()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn maps_beyond_the_runs_go_by_the_names_that_runs_give_them() {
+        let folder = tempfile::tempdir().unwrap();
+        let maps = folder.path().join("maps");
+        for name in ["000001", "000002", "7", "notes"] {
+            std::fs::create_dir_all(maps.join(name)).unwrap();
+        }
+        std::fs::write(maps.join("000009"), "no folder").unwrap();
+        remove_maps_beyond(folder.path(), 2).unwrap();
+        let entries = std::fs::read_dir(&maps).unwrap();
+        let left: BTreeSet<OsString> = entries.map(|entry| entry.unwrap().file_name()).collect();
+        assert_eq!(left, ["000001", "000009", "7", "notes"].map(OsString::from).into());
+    }
+}

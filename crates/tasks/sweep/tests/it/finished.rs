@@ -9,7 +9,7 @@ use raypencil_sweep::{
 use serde_json::{Value, json};
 
 /// A sweep over these axes with these outcomes, which nobody has made.
-fn finished(task: Task, axes: &[&str], outcomes: Vec<Outcome>) -> Finished {
+pub(super) fn finished(task: Task, axes: &[&str], outcomes: Vec<Outcome>) -> Finished {
     let sweep = Sweep {
         scene: "pyramids".into(),
         scene_sha256: "0".repeat(64),
@@ -23,7 +23,7 @@ fn finished(task: Task, axes: &[&str], outcomes: Vec<Outcome>) -> Finished {
     Finished { sweep, outcomes }
 }
 
-fn results(results: &[(&str, Value)]) -> Outcome {
+pub(super) fn results(results: &[(&str, Value)]) -> Outcome {
     Outcome::Results(results.iter().map(|(name, value)| (name.to_string(), value.clone())).collect())
 }
 
@@ -31,7 +31,7 @@ fn passing(passes: bool) -> Outcome {
     results(&[("passes", json!(passes))])
 }
 
-fn refused() -> Outcome {
+pub(super) fn refused() -> Outcome {
     Outcome::Refused("no".into())
 }
 
@@ -109,6 +109,56 @@ fn results_stand_in_the_column_of_their_name_wherever_a_run_has_them() {
     assert_eq!(numbers("c"), [None, Some(5.0), None]);
     assert_eq!(numbers("passes"), [Some(1.0), Some(0.0), None]);
     assert_eq!(table.column("refused").unwrap().cells.text(2), "no");
+}
+
+#[test]
+fn results_are_short_numbers_and_parameters_stand_as_they_were_given() {
+    let outcome = |hits: u64, share: f64| {
+        results(&[("camera.hits", json!(hits)), ("beam-0.visible_share", json!(share))])
+    };
+    let outcomes = vec![outcome(12_345, 0.123_456), outcome(7, 1.0)];
+    let axis = Axis::list_from_bytes(b"a,b\n0.123456,x\n2,long\n", "list.csv".as_ref()).unwrap();
+    let mut made = finished(Task::Render, &["a=1,2"], outcomes);
+    made.sweep.axes = vec![axis];
+    let screen = screen(&made);
+    // Whole numbers keep their digits. Texts begin where their head does; numbers end where it does.
+    let table: Vec<&str> = screen.lines().skip_while(|line| !line.starts_with("run")).take(3).collect();
+    assert_eq!(
+        table,
+        [
+            "run         a  b     camera.hits  beam-0.visible_share",
+            "  0  0.123456  x           12345                 0.123",
+            "  1         2  long            7                     1",
+        ],
+        "{screen}"
+    );
+}
+
+#[test]
+fn programs_get_the_words_that_give_the_scene_of_each_run() {
+    let made = finished(Task::Validate, &["a=1,2", "b=x"], vec![passing(true), refused()]);
+    let written = Written { tables: ["a", "b"].map(PathBuf::from), charts: Vec::new() };
+    let json = sweep_document(&made, &SweepTable::new(&made), &written, &[]).json();
+    let data: Value = serde_json::from_str(&json).unwrap();
+    let run =
+        |run: u64| json!({ "run": run, "arguments": format!("pyramids --set a={} --set b=x", run + 1) });
+    assert_eq!(data["runs"], json!([run(0), run(1)]));
+    assert_eq!(data["refused"], json!([{ "run": 1, "message": "no" }]));
+}
+
+#[test]
+fn each_run_is_a_case_that_says_its_settings_and_whether_it_was_refused_or_disagrees() {
+    let made = finished(Task::Validate, &["a=1:3:1"], vec![passing(true), refused(), passing(false)]);
+    let written = Written { tables: ["a", "b"].map(PathBuf::from), charts: Vec::new() };
+    let junit = sweep_document(&made, &SweepTable::new(&made), &written, &[]).junit().unwrap();
+    let cases: Vec<&str> = junit.split("<testcase ").skip(1).collect();
+    assert_eq!(cases.len(), 3, "{junit}");
+    let faults = [None, Some(["refused", "no"]), Some(["defect", "the renderers disagree"])];
+    for (run, (case, fault)) in cases.iter().zip(faults).enumerate() {
+        assert!(case.starts_with(&format!("name=\"run {run}: a={}\"", run + 1)), "{case}");
+        assert_eq!(case.contains("<failure"), fault.is_some(), "{case}");
+        assert!(fault.iter().flatten().all(|word| case.contains(&format!("\"{word}\""))), "{case}");
+    }
 }
 
 /// The lines of a chart that join the means of its runs: thinner ones are those of its axes and its grid.
