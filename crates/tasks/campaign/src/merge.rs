@@ -107,3 +107,16 @@ fn is_result(path: &Path) -> bool {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     name.starts_with("shard-") && name.ends_with(".json")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_are_told_by_their_names() {
+        assert!(is_result(Path::new("a/shard-1-of-2.json")));
+        for name in ["a/summary.json", "a/shard-1-of-2.json.part", "shard-1/a", "a/part-shard-1.json"] {
+            assert!(!is_result(Path::new(name)), "{name}");
+        }
+    }
+}

@@ -1,6 +1,10 @@
-//! What the terrains of a shard leave beside their records, and what of it is removed when one runs again.
+//! What the terrains of a shard leave, what of it is removed when one runs again, and which of them run again.
+
+use std::sync::Mutex;
 
 use super::*;
+use crate::merge::merge;
+use crate::record::PartName;
 use tempfile::TempDir;
 
 /// What this program made.
@@ -74,4 +78,34 @@ fn a_terrain_leaves_files_of_its_number_in_two_folders() {
     ] {
         assert!(!is_of_3(path), "{path}");
     }
+}
+
+/// What a run says of its progress.
+#[derive(Default)]
+struct Said(Mutex<Vec<[u64; 3]>>);
+
+impl CampaignProgress for Said {
+    fn done(&self, terrains: u64, of: u64, rays: u64) {
+        self.0.lock().unwrap().push([terrains, of, rays]);
+    }
+}
+
+#[test]
+fn a_run_that_goes_on_takes_the_records_of_before_and_counts_its_own_rays() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    let campaign = Campaign::new(5, 2).with_parts(&[PartName::Lattice]).unwrap();
+    let run = || {
+        let said = Said::default();
+        run_shard(&campaign, Shard::WHOLE, folder, &said).unwrap();
+        said.0.into_inner().unwrap()
+    };
+    let first = run();
+    let merged = merge(&[folder.to_path_buf()], None).unwrap();
+    let [a, b] = [0, 1].map(|k: usize| merged.terrains[k].parts[0].compared);
+    assert!(a > 0 && b > 0);
+    assert_eq!(first, [[1, 2, a], [2, 2, a + b]]);
+    assert_eq!(run(), [[1, 2, 0], [2, 2, 0]]);
+    std::fs::remove_file(folder.join("terrains/terrain-000000.json")).unwrap();
+    assert_eq!(run(), [[1, 2, a], [2, 2, a]]);
 }

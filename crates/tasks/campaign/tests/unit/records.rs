@@ -313,6 +313,15 @@ fn counts_at_their_limits_are_taken() {
     let of_text = |bytes: usize| with(vec![ReasonRecord { clause: "x".repeat(bytes), ..reason(1, 2, 9) }]);
     assert_eq!(of_text(1 << 14), Ok(()));
     assert!(of_text((1 << 14) + 1).unwrap_err().contains("a text of 16385 bytes"));
+    // A ground, a text and a largest value at their limits, and two quantities in their order.
+    let mut other = record(0);
+    other.faces = most;
+    let part = &mut other.parts[0];
+    part.wrong[0].what = "x".repeat(1 << 14);
+    part.quantities[0].worst_error.as_mut().unwrap().value = Some(0.0);
+    part.quantities.push(part.quantities[0].clone());
+    (part.quantities[0].quantity, part.quantities[1].quantity) = (Quantity::ALL[0], Quantity::ALL[1]);
+    assert_eq!(check_record(&other, &campaign()), Ok(()));
     // A scene without a wrong ray has no reason.
     let mut right = record(0);
     let part = &mut right.parts[0];
