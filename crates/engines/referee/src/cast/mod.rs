@@ -24,6 +24,7 @@
 //! all         all hits in exact order, and how often the surface is crossed
 //! values      the values of a hit, correctly rounded
 //! margin      how far the ray may be moved sideways before its answer changes
+//! obliqueness by how much rounding changes where a thin face is met
 //! ruling      whether the rounding of another program excuses its answer
 //! square      what holds wherever the ray is moved within a square
 //! ```
@@ -34,6 +35,7 @@
 mod all;
 mod first;
 mod margin;
+mod obliqueness;
 mod query_ray;
 mod ruling;
 mod square;

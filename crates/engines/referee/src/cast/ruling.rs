@@ -43,7 +43,6 @@ use super::triangle::Triangle;
 use super::{ExactCast, moved_bundle};
 use crate::hits::rounded_face::least_cosine;
 use crate::hits::ruling::Ruling;
-use crate::numbers::number::Interval;
 use crate::{RANGE_ROUNDINGS, aspect};
 
 /// How often the errors of the rule are charged, sideways: 8 u S twice.
@@ -111,28 +110,26 @@ impl ExactCast<'_> {
     /// How far the range of a face may be wrong for a program of this precision: 72 kappa u S / c, in the mesh's
     /// unit. Infinite for a face that is parallel to the ray or has no area, and where there is no such face.
     pub fn range_error(&self, ray: &CastRay, face: FaceId, precision: Precision) -> f64 {
-        self.triangle(face).map_or(f64::INFINITY, |face| {
-            let [a, b, c] = face.corners;
-            let normal = (b - a).cross(c - a);
-            let cosine_length = normal.dot(ray.direction).abs() / QueryRay::length(ray);
-            let kappa_n = aspect(face.corners) * normal.length();
-            let error = ALONG * precision.unit_roundoff * self.size(ray) * kappa_n / cosine_length;
-            if error.is_nan() { f64::INFINITY } else { error }
-        })
+        ALONG * precision.unit_roundoff * self.size(ray) * self.aspect_over_cosine(ray, face)
     }
 
-    /// Whether a program of this precision may take the front of the face for its back.
-    fn is_edge_on(&self, ray: &CastRay, face: &Triangle, precision: Precision) -> bool {
-        let [a, b, c] = face.corners;
-        let normal = (b - a).cross(c - a);
-        let cosine = normal.dot(ray.direction).abs() / (normal.length() * QueryRay::length(ray));
-        cosine <= 2.0 * least_cosine(aspect(face.corners), precision.unit_roundoff)
+    /// Whether a program of this precision may take the front of a face for its back: it is edge-on, or so thin that its normal is
+    /// rounding alone.
+    pub fn may_turn_side(&self, ray: &CastRay, face: FaceId, precision: Precision) -> bool {
+        self.triangle(face).is_some_and(|face| is_edge_on(ray, &face, precision))
     }
 
     /// S: no coordinate seen from the ray's origin is larger.
     fn size(&self, ray: &CastRay) -> f64 {
         self.tree.largest_coordinate + ray.origin.abs().max_element()
     }
+}
+
+/// Whether a program of this precision may take the front of a face for its back: c <= 2 (5 kappa + 15) u.
+fn is_edge_on(ray: &CastRay, face: &Triangle, precision: Precision) -> bool {
+    let kappa = aspect(face.corners);
+    let cosine = kappa / face.aspect_over_cosine(ray);
+    cosine <= 2.0 * least_cosine(kappa, precision.unit_roundoff)
 }
 
 /// One stated answer.
@@ -222,8 +219,7 @@ impl Trial<'_> {
 
     /// The t of a face, rounded, and the error that its range is charged with, as a part of t.
     fn t_and_error(&self, face: &Triangle, query: &QueryRay<'_>) -> (f64, f64) {
-        let t = face.height::<Interval>(query.fast()).over(face.approach(query.fast()));
-        (t.middle(), self.range_error_in_t(face))
+        (face.t_of_plane(query), self.range_error_in_t(face))
     }
 
     /// The error that the range of a face is charged with, as a part of t.
@@ -240,8 +236,7 @@ impl Trial<'_> {
         let CastRay { t_min, t_max, t_blind, .. } = *self.ray;
         // Its t and the error of it, if the moved ray meets a face that may lie within the ray's ends.
         let met = |face: &Triangle| {
-            let is_edge_on = self.cast.is_edge_on(self.ray, face, self.precision);
-            let sides = if is_edge_on { Sides::Both } else { self.sides };
+            let sides = if is_edge_on(self.ray, face, self.precision) { Sides::Both } else { self.sides };
             let (t, error) = self.t_and_error(face, &query);
             let is_met = face.met_side(&query, sides).is_some() && t + error >= t_min && t - error <= t_max;
             is_met.then_some((t, error))

@@ -73,9 +73,16 @@ pub fn compare_with(
     let judged: Vec<Judged> = rays.par_iter().enumerate().map(|(index, ray)| judge.ray(index, ray)).collect();
     let given = |value: &CastValue| stated.part(*value, 0).is_some() || rays.is_empty();
     let tally = |value: CastValue| {
-        let mut tally = ValueTally { value, compared: 0, wrong: 0, worst: None };
+        let mut tally = ValueTally { value, compared: 0, not_compared: 0, wrong: 0, worst: None };
         for (index, judged) in judged.iter().enumerate() {
-            let Some(ratio) = judged.ratios[value as usize] else { continue };
+            let ratio = match judged.values[value as usize] {
+                Some(Compared::Ratio(ratio)) => ratio,
+                Some(Compared::Anything) => {
+                    tally.not_compared += 1;
+                    continue;
+                }
+                None => continue,
+            };
             tally.compared += 1;
             tally.wrong += u64::from(ratio > 1.0);
             if tally.worst.is_none_or(|(worst, _)| ratio > worst) {
@@ -141,9 +148,27 @@ pub(crate) fn normal_error(
     face: FaceId,
     precision: Precision,
 ) -> f64 {
-    let [a, b, c] = mesh.corners(face);
-    let shortest = [b - a, c - b, a - c].map(DVec3::length).into_iter().fold(f64::INFINITY, f64::min);
-    aspect([a, b, c]) * (16.0 * precision.unit_roundoff + exact.lateral_error(ray, precision) / shortest)
+    let corners = mesh.corners(face);
+    let shortest = edge_lengths(corners).into_iter().fold(f64::INFINITY, f64::min);
+    aspect(corners) * (16.0 * precision.unit_roundoff + exact.lateral_error(ray, precision) / shortest)
+}
+
+/// The lengths of the edges of a triangle of any size.
+fn edge_lengths([a, b, c]: [DVec3; 3]) -> [f64; 3] {
+    [b - a, c - b, a - c].map(|edge| {
+        let largest = edge.abs().max_element();
+        // Squares of tiny lengths would be 0.
+        if largest > 0.0 { (edge / largest).length() * largest } else { 0.0 }
+    })
+}
+
+/// What became of a value.
+#[derive(Debug, Clone, Copy)]
+enum Compared {
+    /// Its error as a part of its bound.
+    Ratio(f64),
+    /// Rounding may make anything of it: the face is too thin for this arithmetic.
+    Anything,
 }
 
 /// One ray, judged.
@@ -151,8 +176,8 @@ struct Judged {
     verdict: RayVerdict,
     /// Whether the ray meets something, too near or not.
     is_met: bool,
-    /// The error of each value as a part of its bound, where it was compared.
-    ratios: [Option<f64>; 7],
+    /// Each value, where there is one to compare.
+    values: [Option<Compared>; 7],
 }
 
 /// Whether a t, which storing may have moved by `stored`, is the end of the ray: as it is, or as arithmetic of single precision has it.
@@ -183,7 +208,7 @@ struct Judge<'a> {
 impl Judge<'_> {
     fn ray(&self, index: usize, ray: &CastRay) -> Judged {
         let read = self.exact.reading(ray, self.sides);
-        let judged = |verdict| Judged { verdict, is_met: !matches!(read, Reading::Miss), ratios: [None; 7] };
+        let judged = |verdict| Judged { verdict, is_met: !matches!(read, Reading::Miss), values: [None; 7] };
         if let Some(wrong) = self.disagreement(index, ray) {
             return judged(RayVerdict::Wrong(wrong));
         }
@@ -208,19 +233,19 @@ impl Judge<'_> {
             }
             Ruling::Exact | Ruling::Tie => {
                 let hit = stated.hit().and_then(|face| self.exact.meeting(ray, *face));
-                let (wrong, ratios) = match hit {
+                let (wrong, values) = match hit {
                     None => (None, [None; 7]),
                     Some(hit) => self.values(index, ray, &hit),
                 };
                 if wrong.is_some()
                     && let (Reading::Hit(face), Reading::Hit(faces)) = (stated, &read)
-                    && let Some((verdict, ratios)) = self.unnamed_face(index, ray, (face, faces))
+                    && let Some((verdict, values)) = self.unnamed_face(index, ray, (face, faces))
                 {
-                    return Judged { ratios, ..judged(verdict) };
+                    return Judged { values, ..judged(verdict) };
                 }
                 let is_tie = read.hit().is_some_and(|faces| faces.len() > 1);
                 let same = RayVerdict::Same { is_tie };
-                Judged { ratios, ..judged(wrong.map_or(same, RayVerdict::Wrong)) }
+                Judged { values, ..judged(wrong.map_or(same, RayVerdict::Wrong)) }
             }
         }
     }
@@ -232,14 +257,14 @@ impl Judge<'_> {
         index: usize,
         ray: &CastRay,
         (face, nearest): (FaceId, &[FaceId]),
-    ) -> Option<(RayVerdict, [Option<f64>; 7])> {
+    ) -> Option<(RayVerdict, [Option<Compared>; 7])> {
         if self.stated.face.is_some() {
             return None;
         }
         for other in nearest.iter().filter(|other| **other != face) {
             let Some(hit) = self.exact.meeting(ray, *other) else { continue };
-            if let (None, ratios) = self.values(index, ray, &hit) {
-                return Some((RayVerdict::Same { is_tie: true }, ratios));
+            if let (None, values) = self.values(index, ray, &hit) {
+                return Some((RayVerdict::Same { is_tie: true }, values));
             }
         }
         if self.has_normal_of(index, ray, face)? {
@@ -415,10 +440,8 @@ impl Judge<'_> {
 
     /// Whether the ray passes the plane of a face at this distance.
     fn is_plane_at(&self, index: usize, ray: &CastRay, face: FaceId, distance: f64, is_t: bool) -> bool {
-        let [a, b, c] = self.mesh.corners(face);
-        let normal = (b - a).cross(c - a);
         let per_t = ray.direction.length();
-        let t = normal.dot(a - ray.origin) / normal.dot(ray.direction);
+        let t = self.exact.t_of_plane(ray, face);
         let range = if is_t { distance * per_t } else { distance };
         let stored = &self.stated.stored;
         let of_storing = match is_t {
@@ -437,14 +460,14 @@ impl Judge<'_> {
         let of_arithmetic = match value {
             CastValue::T => range() / ray.direction.length(),
             CastValue::Range => range(),
+            CastValue::Side if self.exact.may_turn_side(ray, hit.face(), self.precision) => 2.0,
             CastValue::Side => 0.0,
             CastValue::Point => range() + lateral(),
             CastValue::Barycentric => {
-                let [a, b, c] = self.mesh.corners(hit.face());
-                let edges = [b - a, c - b, a - c].map(DVec3::length);
-                let doubled_area = (b - a).cross(c - a).length();
-                let longest = edges[0].max(edges[1]).max(edges[2]);
-                lateral() / (hit.cos_incidence().double.abs() * (doubled_area / longest)) + 16.0 * u
+                // 1 / (c h): the least height h of a triangle is twice its area over its longest edge.
+                let mut edges = edge_lengths(self.mesh.corners(hit.face()));
+                edges.sort_unstable_by(f64::total_cmp);
+                lateral() * self.exact.aspect_over_cosine(ray, hit.face()) / edges[1] + 16.0 * u
             }
             CastValue::Normal => normal(),
             CastValue::CosIncidence => normal() + 8.0 * u,
@@ -452,15 +475,15 @@ impl Judge<'_> {
         of_arithmetic + self.stated.stored.of(value, index)
     }
 
-    /// The first value that is wrong, and all errors as parts of their bounds.
+    /// The first value that is wrong, and what became of each.
     fn values(
         &self,
         index: usize,
         ray: &CastRay,
         hit: &CastMeeting<'_>,
-    ) -> (Option<Wrong>, [Option<f64>; 7]) {
+    ) -> (Option<Wrong>, [Option<Compared>; 7]) {
         let mut wrong = None;
-        let mut ratios = [None; 7];
+        let mut values = [None; 7];
         for value in CastValue::ALL {
             let Some(stated) = self.stated.part(value, index) else { continue };
             let exact = value.exact(hit);
@@ -469,17 +492,19 @@ impl Judge<'_> {
             let worst = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
             let error = worst(worst(differences[0], differences[1]), differences[2]);
             let bound = self.bound(value, index, ray, hit);
-            if bound.is_infinite() && error.is_finite() {
-                // Nothing can be said of it.
+            // What a side, a unit vector or a cosine may be at all is no further apart than 2.
+            let is_of_unit = matches!(value, CastValue::Side | CastValue::Normal | CastValue::CosIncidence);
+            if error.is_finite() && (bound.is_infinite() || is_of_unit && bound >= 2.0 && error <= bound) {
+                values[value as usize] = Some(Compared::Anything);
                 continue;
             }
             let ratio = if error == 0.0 { 0.0 } else { error / bound };
             let ratio = if ratio.is_nan() { f64::INFINITY } else { ratio };
-            ratios[value as usize] = Some(ratio);
+            values[value as usize] = Some(Compared::Ratio(ratio));
             if ratio > 1.0 && wrong.is_none() {
                 wrong = Some(Wrong::Value { value, error, bound });
             }
         }
-        (wrong, ratios)
+        (wrong, values)
     }
 }

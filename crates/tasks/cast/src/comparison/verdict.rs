@@ -110,7 +110,10 @@ pub struct ValueTally {
     pub value: CastValue,
     /// Number of rays with the same face on which it was compared.
     pub compared: u64,
-    /// Number of these rays on which it is beyond its bound.
+    /// Number of rays with the same face on which it was not: the face is too thin for the program's arithmetic, and rounding may make
+    /// anything of it.
+    pub not_compared: u64,
+    /// Number of the compared rays on which it is beyond its bound.
     pub wrong: u64,
     /// The largest error as a part of its bound, and the index of its ray; `None` if nothing was compared.
     pub worst: Option<(f64, usize)>,
@@ -158,6 +161,7 @@ impl Comparison {
         self.met += later.met;
         for (tally, more) in self.values.iter_mut().zip(later.values) {
             tally.compared += more.compared;
+            tally.not_compared += more.not_compared;
             tally.wrong += more.wrong;
             // Of equal errors the first ray stays.
             let is_worse = |(error, _): &(f64, usize)| tally.worst.is_none_or(|(known, _)| *error > known);

@@ -280,6 +280,7 @@ impl RayPackChecked {
                 key: tally.value.name().into(),
                 name: tally.value.name().into(),
                 by_class,
+                not_compared: tally.not_compared,
                 worst_ratio,
                 ..hits.clone()
             }
