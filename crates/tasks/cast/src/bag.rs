@@ -64,7 +64,18 @@ impl BagFields {
         }
     }
 
-    /// Name, place and type of each field, and the bytes of a point.
+    /// Name, place and type of each field, those of returns behind the driver's own, and the bytes of a point.
+    fn point(self, has_returns: bool) -> (Vec<(&'static str, u32, u8)>, u32) {
+        let (own, bytes) = self.layout();
+        let mut fields = own.to_vec();
+        if !has_returns {
+            return (fields, bytes);
+        }
+        fields.extend(RETURN_FIELDS.map(|(name, at, datatype)| (name, bytes + at, datatype)));
+        (fields, bytes + RETURN_BYTES)
+    }
+
+    /// The same of the driver's own fields.
     fn layout(self) -> (&'static [(&'static str, u32, u8)], u32) {
         const REAL: u8 = PointField::FLOAT32;
         match self {
@@ -260,8 +271,7 @@ impl<'a> ScanBag<'a> {
     /// The next scan.
     pub(crate) fn add(&mut self, answers: &Answers, scan: &NamedRaySet) -> Result<(), FileError> {
         let returns = BeamReturns::of(answers, scan);
-        let (_, own_bytes) = self.form.fields.layout();
-        let point_bytes = own_bytes + if returns.is_some() { RETURN_BYTES } else { 0 };
+        let (_, point_bytes) = self.form.fields.point(returns.is_some());
         let count = spots(answers, returns.as_ref(), &scan.echo).len() as u64;
         if count * u64::from(point_bytes) > u64::from(u32::MAX) {
             let found = format!("{count} points of {point_bytes} bytes");
@@ -326,13 +336,7 @@ fn cloud(
     (stamp, first_s): (Stamp, f64),
 ) -> PointCloud2 {
     let BagForm { fields, is_dense } = form;
-    let (layout, own_step) = fields.layout();
-    let mut layout = layout.to_vec();
-    let mut point_step = own_step;
-    if returns.is_some() {
-        layout.extend(RETURN_FIELDS.map(|(name, at, datatype)| (name, own_step + at, datatype)));
-        point_step += RETURN_BYTES;
-    }
+    let (layout, point_step) = fields.point(returns.is_some());
     let step = point_step as usize;
     let places = Places::of(set, returns, fields);
     let is_dense = is_dense || fields == BagFields::Livox;

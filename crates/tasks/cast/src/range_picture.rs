@@ -230,3 +230,7 @@ fn key(page: &mut Drawing, [x, y]: [f64; 2], colour: Colour, words: &str) {
     page.polygon(corners, colour, None);
     page.text([x + 20.0, y + 12.0], words, Anchor::Start, SOFT);
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/range_picture.rs"]
+mod tests;

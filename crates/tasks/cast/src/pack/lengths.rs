@@ -170,3 +170,23 @@ fn undo(trial: &mut Trial, by: f64, undone: Undone, with_points: bool) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_is_found_if_half_of_the_rays_are_off_by_half_of_it_to_once_and_a_half() {
+        let found_of = |offsets: &[f64]| {
+            let pairs: Vec<[f64; 2]> = offsets.iter().map(|off| [8.0 + off, 8.0]).collect();
+            found(&pairs, |[stated, exact]| stated - exact, 0.0)
+        };
+        // The one in the middle is off by 1. Exactly half of it is enough.
+        assert_eq!(found_of(&[0.5, 0.5, 0.5, 1.0, 3.0, 3.0]), [1.0]);
+        assert_eq!(found_of(&[0.5, 0.5, 1.0, 1.5, 3.0]), [1.0]);
+        // Two of five are fewer than half, and two of four are not.
+        assert_eq!(found_of(&[0.25, 0.5, 1.0, 3.0, 3.0]), [0.0; 0]);
+        assert_eq!(found_of(&[0.25, 0.5, 1.0, 3.0]), [1.0]);
+        assert_eq!(found_of(&[0.0; 5]), [0.0; 0]);
+    }
+}

@@ -446,3 +446,7 @@ fn said_and_true(wrong: &Wrong) -> (String, Option<String>) {
         Wrong::Value { value, .. } => (value.name().into(), None),
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/report.rs"]
+mod tests;

@@ -135,3 +135,20 @@ impl Trial {
         self.rays.iter().any(|ray| ray.t_blind > 0.0) || says(&self.stated.t) || says(&self.stated.range)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_storing_did_to_a_point_is_less_of_t_along_a_longer_direction() {
+        // 12 m along x, by directions 1 m and 4 m long; a micrometre of each may have been rounded away.
+        let (raw, error) = (vec![DVec3::new(14.0, 1.0, 0.0); 2], vec![1e-6; 2]);
+        let cloud = CloudPart { raw: raw.clone(), error: error.clone(), pose: vec![None; 2] };
+        let rays = [1.0, 4.0].map(|length| CastRay::new(DVec3::new(2.0, 1.0, 0.0), length * DVec3::X));
+        let mut stated = Stated::default();
+        cloud.state(&rays, &mut stated);
+        assert_eq!((stated.t, stated.point), (Some(vec![12.0, 3.0]), Some(raw)));
+        assert_eq!((stated.stored.t, stated.stored.point), (Some(vec![1e-6, 2.5e-7]), Some(error)));
+    }
+}

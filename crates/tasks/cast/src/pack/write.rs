@@ -252,3 +252,32 @@ fn answer_names() -> impl Iterator<Item = String> {
     ];
     names.into_iter().map(|name| format!("{name}.npy"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use raypencil_scene::Silent;
+
+    #[test]
+    fn counts_that_follow_from_first_hits_are_those_of_the_rays() {
+        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        let mesh = Triangles::new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).expect("a square");
+        let down = |(x, y, t_blind): (f64, f64, f64)| {
+            let ray = CastRay::new(glam::DVec3::new(x, y, 1.0), -glam::DVec3::Z);
+            CastRay { t_blind, ..ray }
+        };
+        // Three on the diagonal, which two faces share, two beside it, one that is too near, and two beside the square.
+        let places =
+            [(0.25, 0.25), (0.5, 0.5), (0.75, 0.75), (0.5, 0.25), (0.25, 0.5), (2.0, 0.0), (0.0, 2.0)];
+        let mut rays: Vec<CastRay> = places.into_iter().map(|(x, y)| down((x, y, 0.0))).collect();
+        rays.push(down((0.75, 0.5, 2.0)));
+        let answers = cast(&mesh, &rays, Sides::Both, Questions::default(), &Silent);
+        let expected = [("rays", 8), ("hits", 5), ("tooNear", 1), ("misses", 2), ("ties", 3)];
+        assert_eq!(
+            RayPackCounts::of_first(&answers.first).by_key()[..RayPackCounts::KEYS_OF_FIRST],
+            expected
+        );
+        let of_rays = RayPackCounts::of(&ExactCast::new(&mesh), &rays, Sides::Both);
+        assert_eq!(of_rays.by_key()[..RayPackCounts::KEYS_OF_FIRST], expected);
+    }
+}

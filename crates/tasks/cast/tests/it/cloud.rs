@@ -118,6 +118,19 @@ fn rings_ascend_with_the_elevation_and_channels_keep_the_order_of_the_manual() {
 }
 
 #[test]
+fn each_frame_has_a_file_and_a_word_of_its_own() {
+    assert_eq!(
+        CloudFrame::ALL.map(|frame| (frame.file(), frame.option())),
+        [
+            ("cloud.pcd", "mesh"),
+            ("cloud-sensor.pcd", "sensor"),
+            ("cloud-start.pcd", "start"),
+            ("cloud-end.pcd", "end")
+        ]
+    );
+}
+
+#[test]
 fn points_stand_in_the_frame_that_the_header_says() {
     // One metre up, turned by a quarter to the left, and three metres ahead.
     let turned = Pose::from_axis_angle(DVec3::Z, std::f64::consts::FRAC_PI_2);

@@ -2,7 +2,7 @@
 
 use raypencil_cast::{CloudFrame, RayPackChecked};
 
-use super::cloud_trial::{Fields, Point, Trial, bend, expect, head, points, still};
+use super::cloud_trial::{Fields, Point, Trial, bend, expect, head, of_frame, points, still};
 
 const FRAME: CloudFrame = CloudFrame::Sensor;
 
@@ -25,7 +25,15 @@ fn right_ones_pass_by_order_and_by_direction() {
         let trial = Trial::new(&head(), &mounting);
         let points = points(&trial.set, FRAME);
         for (fields, name) in [(Fields::Ring, "ring"), (Fields::Time, "time")] {
-            for checked in [trial.judge(&points, fields, FRAME), trial.judge_dense(&points, fields, FRAME)] {
+            // With a place more than rays the order says nothing, and places without a point are no points of no ray.
+            let none = points.iter().find(|point| point.place.is_nan()).expect("a miss");
+            let more = [points.as_slice(), &[*none]].concat();
+            let of_more = trial.check(&trial.write(&more, fields, [more.len(), 1]), of_frame(FRAME));
+            for checked in [
+                of_more.expect("a check"),
+                trial.judge(&points, fields, FRAME),
+                trial.judge_dense(&points, fields, FRAME),
+            ] {
                 assert!(checked.passes(), "{fields:?}: {:?}", checked.why);
                 assert_eq!(told(checked), (vec![], vec![name.to_string()]));
             }

@@ -226,6 +226,24 @@ fn a_changed_pack_and_arrays_of_another_shape_are_refused() {
     }
 }
 
+#[test]
+fn a_file_in_place_of_a_folder_is_told_by_its_ending() {
+    let folders = Folders::right();
+    for (name, found) in [
+        ("t.npy", "candidate: one array; expected a folder with face.npy"),
+        ("T.NPY", "candidate: one array; "),
+        ("hits.csv", "candidate: a file that ends in .csv; "),
+        ("hits", "candidate: a file without an ending; "),
+    ] {
+        let file = folders.candidate.path().join(name);
+        std::fs::write(&file, "").unwrap();
+        let conventions = CandidateConventions::default();
+        let refused = check_ray_pack(folders.pack.path(), &file, Precision::F64, conventions, &Silent);
+        let message = refused.unwrap_err().to_string();
+        assert!(message.contains(found), "{message}");
+    }
+}
+
 /// A link that leads nowhere is no array that was left out.
 #[cfg(unix)]
 #[test]

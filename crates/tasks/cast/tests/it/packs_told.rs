@@ -118,6 +118,10 @@ fn constants_for_misses_are_named() {
     let of_faces =
         |to: f64| Folders::right().change("face", move |_, face| if face == none { to } else { face });
     of_faces(12.0).expect_why(&["if 12 means no hit: declare --miss 12"]);
+    let of_points = |_: usize, part: f64| if part.is_nan() { 1000.0 } else { part };
+    Folders::right()
+        .change("point", of_points)
+        .expect_why(&["100.0000 %", "if 1000 means no hit: declare --miss 1000"]);
     // What differs from miss to miss is no constant.
     let checked = Folders::right()
         .change("t", |k, t| if t.is_finite() { t } else { 50.0 + (k % 3) as f64 })
@@ -225,6 +229,9 @@ fn single_precision_must_be_declared() {
     let folders = values.iter().fold(Folders::right(), |folders, name| folders.change(name, single));
     assert!(folders.check_by(Precision::F32, CandidateConventions::default()).passes());
     folders.expect_why(&["declare --arithmetic f32"]);
+    // What is right says nothing of what is wrong: lengths alone.
+    let lengths = Folders::right().change("t", single).change("range", single);
+    lengths.expect_why(&["100.0000 %", "declare --arithmetic f32"]);
 }
 
 #[test]
@@ -348,6 +355,12 @@ fn small_errors_are_told_as_what_they_are() {
         let normals = Folders::right().change("barycentric", rounded);
         normals.expect_why(&[&format!("if barycentric weights are rounded to {decimals} decimals")]);
     }
+    // A multiple that is not the nearest one is no rounding: one ray of 200 stays wrong.
+    let hit = right().of("t").iter().position(|t| t.is_finite()).unwrap();
+    let other = move |k: usize, t: f64| ((t * 1e4).round() + if k == hit { 3.0 } else { 0.0 }) / 1e4;
+    right()
+        .change("t", move |k, t| if t.is_finite() { other(k, t) } else { t })
+        .expect_why(&["99.5000 %", "if t is rounded to 4 decimals"]);
     // Too long by no number, and always too long: no rounding does that.
     let grown = right().without(&["range"]).change("t", |k, t| t + 1e-8 * (1 + k % 7) as f64);
     assert!(grown.check_by(Precision::F32, CandidateConventions::default()).passes());

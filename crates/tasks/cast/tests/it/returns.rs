@@ -1,7 +1,10 @@
 //! Returns of beams with a width, of worlds whose ranges and shares follow by hand.
 
 use glam::DVec3;
-use raypencil_cast::{Answers, BeamReturn, BeamReturns, CastSource, PcdData, Questions, cast, write_set};
+use raypencil_cast::{
+    Answers, BeamReturn, BeamReturns, CastSource, CloudFrame, CloudMap, PcdData, Questions, cast, write_pcd,
+    write_set,
+};
 use raypencil_files::{Limits, read_npy_numbers};
 use raypencil_scene::pattern::{Cone, EchoLight, Keep, Mounting, PatternRays, Returns};
 use raypencil_scene::{CastRay, NamedRaySet, Sides, Silent, Triangles};
@@ -225,6 +228,26 @@ fn rays_that_miss_or_are_too_near_are_counted_apart() {
     let footprint = returns.footprints()[0];
     assert_eq!((footprint.returns, footprint.hits, footprint.too_near), (1, 7, 12));
     assert_eq!((told(&returns)[0].number, returns.missed(&footprint)), (1, 0.0));
+}
+
+#[test]
+fn in_a_cloud_a_beam_is_too_near_once_and_a_beam_that_misses_never() {
+    let walls = mesh(&[wall(10.0, -1.0, 1.0)]);
+    let folder = tempfile::tempdir().expect("a folder");
+    for (direction, t_blind, first) in [(DVec3::X, 15.0, f32::NEG_INFINITY), (DVec3::NEG_X, 15.0, f32::NAN)] {
+        let set = beam(direction, t_blind, Keep::UpTo(3), 0.5);
+        let (answers, returns) = asked(&walls, &set);
+        let path = folder.path().join("cloud.pcd");
+        let form = (CloudFrame::Mesh, PcdData::Binary);
+        write_pcd(&path, &answers, (&set, Some(&returns)), form, &CloudMap::default()).expect("a cloud");
+        let cloud = std::fs::read(&path).expect("a file");
+        // Three points of 61 bytes; the range of each stands at 32.
+        let points = cloud[cloud.len() - 3 * 61..].chunks_exact(61);
+        let ranges: Vec<u32> = points
+            .map(|point| f32::from_le_bytes(point[32..36].try_into().expect("four")).to_bits())
+            .collect();
+        assert_eq!(ranges, [first, f32::NAN, f32::NAN].map(f32::to_bits), "{direction}");
+    }
 }
 
 #[test]

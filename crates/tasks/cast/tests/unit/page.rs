@@ -230,3 +230,38 @@ fn each_side_of_a_page_shows_its_own_numbers() {
     let lengths = of_t.t.as_ref().map(|all| all.iter().map(|t| 2.5 * t).collect());
     assert_eq!(shown(&of_t)["range.T"].1[1], single(&lengths));
 }
+
+#[test]
+fn a_page_says_where_its_rays_stand_and_how_its_numbers_are_read() {
+    let rays = [2.5, 3.5].map(|x| CastRay::new(glam::DVec3::new(x, 0.0, 1.0), -glam::DVec3::Z));
+    let answers = Answers {
+        first: vec![Reading::Miss, Reading::TooNear],
+        any: None,
+        all: None,
+        margins: None,
+        decided: None,
+    };
+    let page = CastPage {
+        title: "two rays",
+        facts: &[],
+        shape: &[2],
+        rays: &rays,
+        answers: &answers,
+        mesh: None,
+        set: None,
+        scan: None,
+        has_arrays: false,
+        compared: None,
+    };
+    let (html, notes) = page.explorer_with_notes();
+    // The model that the page's script reads.
+    assert!(html.contains("id=\"page-model\"") && html.contains("\"two rays\""));
+    let numbers = |arrays: &str| {
+        format!(
+            "The numbers of this page are in single precision{arrays}. Lengths are in the mesh's own unit, which the scales call m."
+        )
+    };
+    assert_eq!(notes, ["The rays in their order, row by row.".to_string(), numbers("")]);
+    let (_, notes) = CastPage { has_arrays: true, ..page }.explorer_with_notes();
+    assert_eq!(notes[1], numbers("; the arrays beside it have all digits"));
+}

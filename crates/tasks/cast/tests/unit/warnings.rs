@@ -68,6 +68,10 @@ fn limits_that_end_before_the_mesh_are_told_with_their_numbers() {
     let many: Vec<CastRay> = (0..3).flat_map(|_| rays.clone()).collect();
     let words = ["none of the 9,000 rays", "3000 of 3000"];
     assert_one(found(&cube(2000.0, true), &many, Sides::Both, false), WarningCode::NoHits, &words);
+    // Of equally near ones the first is told of.
+    let both = [100.0, 50.0].map(|t_max| CastRay { t_max, ..ray([0.0; 3], [1.0, 0.0, 0.0]) });
+    let words = ["2 of 2", "the nearest at 2000 where the limit is 100: "];
+    assert_one(found(&cube(2000.0, true), &both, Sides::Both, false), WarningCode::NoHits, &words);
     // What lies before t_min counts as well.
     let behind = [CastRay { t_min: 9.0, ..ray([-5.0, 0.1, 0.2], [1.0, 0.0, 0.0]) }];
     assert_one(

@@ -449,3 +449,7 @@ pub(super) fn pose_of(scan: Option<&Scan>, frame: CloudFrame, index: usize) -> O
         CloudFrame::SensorAtEnd => Some(scan.ends[1]),
     }
 }
+
+#[cfg(test)]
+#[path = "../../../tests/unit/cloud_facts.rs"]
+mod tests;
