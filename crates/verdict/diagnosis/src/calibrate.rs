@@ -423,3 +423,7 @@ fn told(scene: &Scene, sensor: SensorId, fit: &Fit) -> Option<(Mistake, Rules)> 
     };
     Some((mistake, Rules { numbers, ..Rules::CONTRACT }))
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/calibrate.rs"]
+mod tests;

@@ -465,15 +465,5 @@ pub(crate) fn before_rounding(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_number_is_scaled_only_where_the_exact_ones_have_a_ratio() {
-        assert_eq!((scaled(6.0, 2.0, 3.0), scaled(6.0, 0.0, 3.0)), (4.0, 0.0));
-        let (inf, nan) = (f64::INFINITY, f64::NAN);
-        for (own, held) in [(2.0, 0.0), (0.0, 0.0), (2.0, inf), (inf, 3.0), (nan, 3.0), (2.0, nan)] {
-            assert_eq!(scaled(6.0, own, held), 6.0, "{own} {held}");
-        }
-    }
-}
+#[path = "../tests/unit/correction.rs"]
+mod tests;

@@ -467,3 +467,7 @@ fn attenuation(case: Case<'_>, leg: Leg) -> FluxFactors {
         })
         .collect()
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/fit.rs"]
+mod tests;

@@ -342,6 +342,24 @@ mod tests {
     }
 
     #[test]
+    fn nearly_all_depths_must_follow_the_law_of_a_z_buffer() {
+        // 1 to 3.3 m, with 0 at 0.5 m and 1 at 100 m; of the last ones of so many something else is stated.
+        let of = |others: usize| {
+            let value = |k: u32| {
+                let exact = 1.0 + 0.1 * f64::from(k);
+                let stated = if k >= 24 - others as u32 { 0.125 } else { z_buffer(exact, 0.0, [0.5, 100.0]) };
+                (stated, exact)
+            };
+            let values = (0..24).map(value).collect();
+            let (of, storage) = (Length::Depth, Storage::F64);
+            Pairs { of, values, has_planes: true, storage, ulp: storage.ulp(1.0), longest: 3.3 }.z_buffer()
+        };
+        let law = Some(Mistake::ZBuffer { low: 0.0, low_at: 0.5, one_at: 100.0 });
+        // 23 of 24 are more than 95 %, and 22 of 24 fewer.
+        assert_eq!([of(0), of(1), of(2)], [law, law, None]);
+    }
+
+    #[test]
     fn quanta_go_from_five_metres_to_a_ten_millionth() {
         let all = quanta();
         assert_eq!((all.len(), all[0], all[1], all[all.len() - 1]), (44, 5.0, 2.0, 1e-7));

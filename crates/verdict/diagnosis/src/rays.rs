@@ -293,3 +293,31 @@ fn is_near_render(case: Case<'_>, channel: Channel, stated: Value, hit: Option<C
         (stated, cast, _) => stated == cast,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::it::candidates::walls;
+    use crate::it::rays::{RIGHT, Tracer, traced};
+    use raypencil_judge::check;
+    use raypencil_scene::Silent;
+
+    #[test]
+    fn of_two_rules_each_must_change_what_the_other_gives() {
+        let bench = walls();
+        let told = |tracer: Tracer| {
+            let candidate = traced(tracer);
+            let found = check(&bench.truth, &candidate, &Silent);
+            let sensors = [SensorId::Camera];
+            let wrong = WrongRays::of(&found, &sensors);
+            let case = Case { truth: &bench.truth, recorded: &candidate, sensors: &sensors, tolerance: 1e-9 };
+            let pairs = CastTrial::new(case, &wrong).explain_by_two();
+            pairs.into_iter().map(|pair| pair.mistakes).collect::<Vec<_>>()
+        };
+        let near = Tracer { t_min: 0.0, ..RIGHT };
+        // No ray meets an edge of the panel before the plane: whether edges are open changes nothing.
+        assert_eq!(told(near), Vec::<Vec<Mistake>>::new());
+        let both = vec![Mistake::NearPlaneIgnored, Mistake::MaximumRangeIgnored];
+        assert_eq!(told(Tracer { max_range: 1e9, ..near }), [both]);
+    }
+}

@@ -5,7 +5,7 @@ mod coarse;
 mod drawn;
 mod light;
 mod one;
-mod rays;
+pub(crate) mod rays;
 mod sensors;
 mod two;
 mod words;

@@ -57,8 +57,19 @@ fn what_a_file_rounds_grows_with_the_unit_and_is_no_error() {
     let ulp = Storage::F64.ulp(3000.0) * 0.5 / 1000.0;
     assert!(absorbed(Storage::F64, 3000.0, 3.0 + 0.9 * eight, 3.0));
     assert!(!absorbed(Storage::F64, 3000.0, 3.0 + 1.1 * eight + ulp, 3.0));
-    // What was not corrected is not absorbed.
-    assert!(!absorbed(Storage::F16, 3.001, 3.001, 3.0));
+    // What was not corrected is not absorbed, however near it is: half precision has steps of 2^-9 there.
+    let half = 1.0 / 1024.0;
+    assert!(absorbed(Storage::F16, 3.0 + 2.0 * half, 3.0 + 0.5 * half, 3.0));
+    assert!(!absorbed(Storage::F16, 3.0 + 0.5 * half, 3.0 + 0.5 * half, 3.0));
+    let of_vectors = |stated: f64, corrected: f64| {
+        let [stated, corrected, exact] = [stated, corrected, 3.0].map(|z| Value::Vector(DVec3::Z * z));
+        super::absorbed(Storage::F16, stated, corrected, exact) == exact
+    };
+    assert!(
+        of_vectors(3.0 + 2.0 * half, 3.0 + 0.5 * half) && !of_vectors(3.0 + 0.5 * half, 3.0 + 0.5 * half)
+    );
+    // Beyond half a step it is an error.
+    assert!(!of_vectors(3.0 + 2.0 * half, 3.0 + 1.01 * half));
 }
 
 /// The first pencil of a beam that hits something.
