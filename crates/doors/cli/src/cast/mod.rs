@@ -434,7 +434,7 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, FileError> {
 fn mesh_text(mesh: &Triangles, source: &CastSource) -> String {
     let of_zero_area = match mesh.zero_area_faces() {
         0 => String::new(),
-        count => format!(", {count} of them without an area"),
+        count => format!(", {count} of them without an area in double precision"),
     };
     let Some([low, high]) = mesh.bounds() else { return "no vertices".into() };
     let size = high - low;

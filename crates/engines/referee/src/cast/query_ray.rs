@@ -30,6 +30,33 @@ impl<T: Number> RayNumbers<T> {
         let origin = Vector::of(ray.origin).add(&u.scaled(&by[0])).add(&v.scaled(&by[1]));
         Self { origin, direction: Vector::of(ray.direction) }
     }
+
+    /// The ray moved sideways so that it passes exactly through a place, which it reaches at `t`.
+    fn through(ray: &CastRay, place: DVec3, t: f64) -> Self {
+        let direction = Vector::of(ray.direction);
+        Self { origin: Vector::of(place).sub(&direction.scaled(&T::of(t))), direction }
+    }
+}
+
+/// How a ray lies beside the one that was asked.
+#[derive(Debug, Clone, Copy)]
+enum Moved {
+    /// It is that one.
+    Not,
+    /// Moved sideways by this.
+    By([f64; 2]),
+    /// Moved sideways so that it passes exactly through a place, which it reaches at this t.
+    Through(DVec3, f64),
+}
+
+impl Moved {
+    fn numbers<T: Number>(self, ray: &CastRay) -> RayNumbers<T> {
+        match self {
+            Self::Not => RayNumbers::of(ray),
+            Self::By(by) => RayNumbers::moved(ray, by.map(T::of)),
+            Self::Through(place, t) => RayNumbers::through(ray, place, t),
+        }
+    }
 }
 
 /// A polynomial of a ray, of which only the sign matters.
@@ -40,8 +67,7 @@ pub(super) trait Polynomial {
 /// One ray; its intervals and its exact numbers are formed when they are first needed.
 pub(super) struct QueryRay<'r> {
     ray: &'r CastRay,
-    /// By how much the ray is moved sideways, if it is.
-    moved: Option<[f64; 2]>,
+    moved: Moved,
     filter: EdgeFilter,
     /// Apart, for they are large and rare.
     fast: OnceCell<Box<RayNumbers<Interval>>>,
@@ -56,7 +82,7 @@ impl<'r> QueryRay<'r> {
         let filter = EdgeFilter::exactly(ray.origin, ray.direction);
         Self {
             ray,
-            moved: None,
+            moved: Moved::Not,
             filter,
             fast: OnceCell::new(),
             exact: OnceCell::new(),
@@ -66,13 +92,23 @@ impl<'r> QueryRay<'r> {
 
     /// The ray moved sideways by `by`, along the two vectors of [`CastRay::across`].
     pub(super) fn moved(ray: &'r CastRay, by: [f64; 2]) -> Self {
-        let fast = RayNumbers::moved(ray, by.map(Interval::of));
+        Self::beside(ray, Moved::By(by))
+    }
+
+    /// The ray moved sideways so that it passes exactly through a place, which no displacement in f64 may reach.
+    pub(super) fn through(ray: &'r CastRay, place: DVec3) -> Self {
+        let t = (place - ray.origin).dot(ray.direction) / ray.direction.length_squared();
+        Self::beside(ray, Moved::Through(place, t))
+    }
+
+    fn beside(ray: &'r CastRay, moved: Moved) -> Self {
+        let fast = moved.numbers::<Interval>(ray);
         let RayNumbers { origin, direction } = fast.clone();
         let one = Interval::of(1.0);
         let filter =
             EdgeFilter::new(&ScaledRay { origin, origin_scale: one, direction, direction_scale: one });
         let fast = OnceCell::from(Box::new(fast));
-        Self { ray, moved: Some(by), filter, fast, exact: OnceCell::new(), decided: Cell::default() }
+        Self { ray, moved, filter, fast, exact: OnceCell::new(), decided: Cell::default() }
     }
 
     /// |d|, to a few roundings.
@@ -102,12 +138,7 @@ impl<'r> QueryRay<'r> {
 
     /// The ray without rounding.
     pub(super) fn exact(&self) -> &RayNumbers<Dyadic> {
-        self.exact.get_or_init(|| {
-            Box::new(match self.moved {
-                Some(by) => RayNumbers::moved(self.ray, by.map(Dyadic::of)),
-                None => RayNumbers::of(self.ray),
-            })
-        })
+        self.exact.get_or_init(|| Box::new(self.moved.numbers(self.ray)))
     }
 
     /// On which side of the edge from corner `k` of a triangle the ray passes, in plain f64; `None` if that is not certain.

@@ -21,7 +21,7 @@
 //! which a face is met that may lie before it. Whoever looks through a face that is too near is not excused: that face is clearly
 //! before the one behind it. Nor is a miss: something is clearly met.
 //!
-//! The displacement is the witness: it can be put into [`ExactCast::first_moved`].
+//! The displacement is the witness: it can be put into [`ExactCast::first_moved`] (but for that of a needle's corner, below).
 //!
 //! A ray cannot slip through an edge that two faces share in this rule, as it can in one that excuses face by face: the
 //! moved ray meets one of the two.
@@ -30,10 +30,11 @@
 //!
 //! What is clearly out of the reach of a whole [square](super::square) of displacements is wrong at once. For the rest,
 //! displacements are tried, exactly: none; onto the stated face, into the middle of what is near; off the faces that are in the way,
-//! over their nearest edge; and around, in 16 directions and three sizes. Only what is found is excused: a missed witness makes the
-//! ruling stricter, never milder.
+//! over their nearest edge; and around, in 16 directions and three sizes. The displacements that meet a needle form a strip about
+//! as thin as the spacing of f64 numbers: there its corners are tried, too, exactly. (The witness of a corner is the displacement
+//! to it, rounded.) Only what is found is excused: a missed witness makes the ruling stricter, never milder.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use raypencil_scene::{CastRay, FaceId, Precision, Reading, Sides};
 
 use super::margin::{Frame, onto_face};
@@ -49,6 +50,9 @@ use crate::{RANGE_ROUNDINGS, aspect};
 const LATERAL: f64 = 16.0;
 /// The same along the ray: 36 kappa u S / c twice.
 const ALONG: f64 = 2.0 * RANGE_ROUNDINGS;
+
+/// From this aspect on a face is a needle: f64 has lost six digits of its normal, and of the strip of displacements that meet it.
+const LEAST_ASPECT_OF_NEEDLES: f64 = (1 << 20) as f64;
 
 impl ExactCast<'_> {
     /// Rules on the first hit that a program of this precision states, or on what it states in place of one. A displacement is
@@ -97,7 +101,11 @@ impl ExactCast<'_> {
         if trial.is_out_of_reach(&first, most) {
             return Ruling::Wrong;
         }
-        let witness = trial.displacements(&first, most).into_iter().find(|&by| trial.excuses(by));
+        let mut usual = trial.displacements(&first, most).into_iter();
+        let witness = usual.find(|&by| trial.excuses(by));
+        let witness = witness.or_else(|| {
+            trial.corners_of_needle(most).find(|corner| trial.excuses_at(corner)).map(|corner| corner.by)
+        });
         witness.map_or(Ruling::Wrong, |moved| Ruling::Rounding(moved.into()))
     }
 
@@ -130,6 +138,13 @@ fn is_edge_on(ray: &CastRay, face: &Triangle, precision: Precision) -> bool {
     let kappa = aspect(face.corners);
     let cosine = kappa / face.aspect_over_cosine(ray);
     cosine <= 2.0 * least_cosine(kappa, precision.unit_roundoff)
+}
+
+/// A corner of a face beside the ray.
+struct Corner {
+    place: DVec3,
+    /// The displacement that brings the ray there, to a few roundings.
+    by: [f64; 2],
 }
 
 /// One stated answer.
@@ -190,6 +205,18 @@ impl Trial<'_> {
         tried.into_iter().filter(is_small).map(|by| by.to_array()).collect()
     }
 
+    /// The stated face, if it is a needle.
+    fn needle(&self) -> Option<&Triangle> {
+        self.stated.hit().filter(|face| aspect(face.corners) >= LEAST_ASPECT_OF_NEEDLES)
+    }
+
+    /// The corners of the stated face that a ray may be moved to, if it is a needle.
+    fn corners_of_needle(&self, most: f64) -> impl Iterator<Item = Corner> + '_ {
+        let corners = self.needle().into_iter().flat_map(|face| face.corners);
+        let corners = corners.map(|place| Corner { place, by: self.frame.displacement_to(place).to_array() });
+        corners.filter(move |corner| corner.by.iter().all(|part| part.abs() <= most))
+    }
+
     /// The faces of which a moved ray must meet one: the stated face, or all that are too near and no farther beside the ray
     /// than is charged.
     fn sought(&self, most: f64) -> Vec<Triangle> {
@@ -227,18 +254,30 @@ impl Trial<'_> {
         self.cast.range_error(self.ray, face.id, self.precision) / QueryRay::length(self.ray)
     }
 
+    /// The ray without its ends. No face is farther behind the origin than where it begins; faces a little before t_min are asked too.
+    fn without_ends(&self) -> CastRay {
+        let behind = -4.0 * self.cast.size(self.ray) / QueryRay::length(self.ray);
+        CastRay { t_min: behind, t_max: f64::INFINITY, ..*self.ray }
+    }
+
     /// Whether the answer is right for the ray moved by this.
     fn excuses(&self, by: [f64; 2]) -> bool {
-        // No face is farther behind the origin than this; faces a little before t_min are asked too.
-        let behind = -4.0 * self.cast.size(self.ray) / QueryRay::length(self.ray);
-        let without_ends = CastRay { t_min: behind, t_max: f64::INFINITY, ..*self.ray };
-        let query = QueryRay::moved(&without_ends, by);
+        self.is_right_for(&QueryRay::moved(&self.without_ends(), by), by)
+    }
+
+    /// Whether the answer is right for the ray moved to a corner.
+    fn excuses_at(&self, corner: &Corner) -> bool {
+        self.is_right_for(&QueryRay::through(&self.without_ends(), corner.place), corner.by)
+    }
+
+    /// Whether the answer is right for a moved ray without ends; `by` is its displacement, to a few roundings.
+    fn is_right_for(&self, query: &QueryRay<'_>, by: [f64; 2]) -> bool {
         let CastRay { t_min, t_max, t_blind, .. } = *self.ray;
         // Its t and the error of it, if the moved ray meets a face that may lie within the ray's ends.
         let met = |face: &Triangle| {
             let sides = if is_edge_on(self.ray, face, self.precision) { Sides::Both } else { self.sides };
-            let (t, error) = self.t_and_error(face, &query);
-            let is_met = face.met_side(&query, sides).is_some() && t + error >= t_min && t - error <= t_max;
+            let (t, error) = self.t_and_error(face, query);
+            let is_met = face.met_side(query, sides).is_some() && t + error >= t_min && t - error <= t_max;
             is_met.then_some((t, error))
         };
         let stated = match &self.stated {
@@ -252,8 +291,8 @@ impl Trial<'_> {
         let bundle = moved_bundle(self.ray, by);
         let mut is_excused = true;
         self.cast.bvh().visit(&bundle, |face| {
-            if is_excused && face.met_side(&query, self.sides).is_some() {
-                let (t, error) = self.t_and_error(face, &query);
+            if is_excused && face.met_side(query, self.sides).is_some() {
+                let (t, error) = self.t_and_error(face, query);
                 // Clearly within the ray's ends, and clearly before the stated face.
                 let is_met = t - error >= t_min && t + error <= t_max;
                 let is_before = stated.is_none_or(|(stated, of_stated)| t + error + of_stated < stated);

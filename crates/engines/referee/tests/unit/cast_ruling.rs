@@ -81,3 +81,28 @@ fn most_wrong_answers_are_told_at_once() {
     let [told, untold] = told(Precision::F64, Sides::Both, 5);
     assert!(told > 19 * untold, "{told} {untold}");
 }
+
+#[test]
+fn a_needle_is_excused_at_a_corner_that_no_displacement_in_f64_reaches() {
+    let (a, b) = (
+        DVec3::new(6.567361919894978, -7.279202159303928, 8.987128512933612),
+        DVec3::new(3.3060175591361585, -2.447666912863473, -4.917474721786153),
+    );
+    // On the line from a to b, but for rounding.
+    let c = DVec3::new(5.344357784610421, -5.467376441888757, 3.7729022999137003);
+    let corners = [a, b, c].map(|corner| corner.to_array()).to_vec();
+    let mesh = raypencil_scene::Triangles::new(corners, vec![[0, 1, 2]]).expect("a triangle");
+    let cast = ExactCast::new(&mesh);
+    let from = DVec3::new(1.6879251973925813, 7.512756417691557, 0.3141276702307172);
+    let rule = |beside: f64, stated| {
+        let ray = CastRay::new(from + DVec3::X * beside, a - from);
+        assert!(cast.first(&ray, Sides::Both).is_empty());
+        cast.rule(&ray, Sides::Both, stated, Precision::F64)
+    };
+    let needle = Reading::Hit(FaceId(0));
+    // Aimed at the corner, the ray passes it by what rounding leaves. 16 u S is 3e-14 here, and decides along both axes.
+    let Ruling::Rounding(by) = rule(0.0, needle) else { panic!("{:?}", rule(0.0, needle)) };
+    assert!(by.max_norm() < 1e-15, "{by:?}");
+    assert!(matches!(rule(1e-14, needle), Ruling::Rounding(_)));
+    assert_eq!(rule(1e-13, needle), Ruling::Wrong);
+}

@@ -47,6 +47,12 @@ pub fn comparison_text(name: &str, comparison: &Comparison, ray_command: impl Fn
             table.row([tally.value.name().to_string(), count(tally.compared), worst, at]);
         }
         let _ = write!(text, "{table}");
+        let not_compared = comparison.values.iter().map(|tally| tally.not_compared).sum();
+        if not_compared > 0 {
+            let values = counted(not_compared, "value was", "values were");
+            let _ =
+                writeln!(text, "{values} not compared: rounding may make anything of them on faces so thin.");
+        }
     }
     for (index, wrong) in comparison.wrong().take(MAX_LISTED) {
         let _ = writeln!(text, "ray {index}: {}\n    {}", wrong_text(&wrong), ray_command(index));

@@ -24,4 +24,5 @@ mod reported;
 mod returns;
 mod returns_at_limits;
 mod shortest_range;
+mod thin_faces;
 mod written;
