@@ -1,7 +1,7 @@
 //! Warnings about the file of a terrain.
 
 use raypencil_mesh_io::{FileFacts, PolygonFacts};
-use raypencil_survey::{Warning, polygons_cross, polygons_not_planar, posts_stand_out};
+use raypencil_survey::{Warning, polygons_cross, polygons_not_planar, posts_stand_out, posts_too_dense};
 
 /// Warnings about the file of a terrain.
 ///
@@ -20,7 +20,8 @@ use raypencil_survey::{Warning, polygons_cross, polygons_not_planar, posts_stand
 pub fn file_warnings(facts: &FileFacts) -> Vec<Warning> {
     let spikes =
         facts.dem().and_then(|dem| dem.spikes.as_ref()).map(|spikes| posts_stand_out(&spikes.words()));
-    polygon_warnings(&facts.polygons).into_iter().chain(spikes).collect()
+    let dense = facts.dem().and_then(|dem| dem.dense_words()).map(|words| posts_too_dense(&words));
+    polygon_warnings(&facts.polygons).into_iter().chain(spikes).chain(dense).collect()
 }
 
 /// Warnings about the polygons of a mesh file.

@@ -52,7 +52,7 @@ mod whereabouts;
 pub use facing::{Facing, facings};
 pub use plan::plan;
 pub use warning::{Warning, WarningCode};
-pub use warnings::file::{polygons_cross, polygons_not_planar, posts_stand_out};
+pub use warnings::file::{polygons_cross, polygons_not_planar, posts_stand_out, posts_too_dense};
 pub use warnings::hits::{SensorHits, few_hits, mostly_backs, no_hits};
 pub use warnings::image::{principal_point_off_centre, principal_point_outside};
 pub use warnings::terrain::{TerrainShape, lies_on_its_side, terrain_on_its_side, terrain_too_large};

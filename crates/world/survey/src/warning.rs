@@ -59,6 +59,8 @@ pub enum WarningCode {
     PolygonsNotPlanar,
     /// Heights of an elevation model stand out by more than the rest of it is high.
     PostsStandOut,
+    /// Posts of an elevation model lie nearer to each other than any survey has them: degrees that are taken as metres.
+    PostsTooDense,
     /// Crossings are asked for of a mesh that is not closed.
     OpenMesh,
     /// Rays would hit if their coordinates of the map were moved into the frame of the scene.
@@ -67,7 +69,7 @@ pub enum WarningCode {
 
 impl WarningCode {
     /// All codes.
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 25] = [
         Self::NoHits,
         Self::FewHits,
         Self::BacksFirst,
@@ -90,6 +92,7 @@ impl WarningCode {
         Self::PolygonsCross,
         Self::PolygonsNotPlanar,
         Self::PostsStandOut,
+        Self::PostsTooDense,
         Self::OpenMesh,
         Self::RaysInMap,
     ];
@@ -119,6 +122,7 @@ impl WarningCode {
             Self::PolygonsCross => "polygons_cross",
             Self::PolygonsNotPlanar => "polygons_not_planar",
             Self::PostsStandOut => "posts_stand_out",
+            Self::PostsTooDense => "posts_too_dense",
             Self::OpenMesh => "open_mesh",
             Self::RaysInMap => "rays_in_map",
         }

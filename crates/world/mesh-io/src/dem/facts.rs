@@ -23,7 +23,13 @@ pub struct DemFacts {
     pub unknown: usize,
     /// Posts that stand out by more than the rest of the model is high.
     pub spikes: Option<SpikeFacts>,
+    /// Distance of neighbouring posts along x and y, metres, if either is below [`MIN_POST_SPACING_M`].
+    pub dense: Option<[f64; 2]>,
 }
+
+/// Distance of posts below which an elevation model is hardly one in metres: surveys of the ground have posts of centimetres at the
+/// least. A degree that is taken as a metre gives less: a second of arc, the spacing of many models, is 0.0003 degrees.
+pub const MIN_POST_SPACING_M: f64 = 0.01;
 
 /// Posts that stand out of an elevation model.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,6 +77,8 @@ impl Dem {
             given_nodata: self.given_nodata.clone(),
             unknown: self.unknown,
             spikes,
+            dense: (self.posts.spacing.min_element() < MIN_POST_SPACING_M)
+                .then(|| self.posts.spacing.to_array()),
         }
     }
 }
@@ -103,12 +111,21 @@ impl DemFacts {
             ("unknown posts", self.unknown_words()),
         ];
         lines.extend(self.spikes.as_ref().map(|spikes| ("warning", spikes.words())));
+        lines.extend(self.dense_words().map(|words| ("warning", words + "?")));
         lines
+    }
+
+    /// That the posts lie very near each other, as a question without its mark; `None` if they do not.
+    pub fn dense_words(&self) -> Option<String> {
+        let [x, y] = self.dense?;
+        Some(format!(
+            "the posts are {x} x {y} m apart: are the coordinates degrees, which are taken as metres"
+        ))
     }
 
     /// Name of the coordinate system of x and y, if the file has one.
     pub fn map_name(&self) -> Option<String> {
-        (self.map.name.is_some() || self.map.code.is_some()).then(|| name(&self.map))
+        is_named(&self.map).then(|| name(&self.map))
     }
 
     /// EPSG code of the coordinate system of x and y, if the file has one and it is in metres, as all places of a scene are.
@@ -118,13 +135,15 @@ impl DemFacts {
 
     /// The systems and units in one line.
     pub fn words(&self) -> String {
-        format!(
-            "map in {}, heights in {}; {}; {}",
-            unit(&self.map),
-            unit(&self.heights),
-            name(&self.map),
-            name(&self.heights)
-        )
+        let system = |of: &AxisSystem, what: &str| match is_named(of) {
+            true => name(of),
+            false => format!("the file names no system of {what}"),
+        };
+        let systems = match [&self.map, &self.heights].map(is_named) {
+            [false, false] => "the file names no coordinate system".to_string(),
+            _ => format!("{}; {}", system(&self.map, "the map"), system(&self.heights, "the heights")),
+        };
+        format!("map in {}, heights in {}; {systems}", unit(&self.map), unit(&self.heights))
     }
 
     /// How many posts are unknown, and what says so.
@@ -150,6 +169,11 @@ fn system(system: &AxisSystem) -> Value {
         "unit_from": system.source.word(),
         "is_depth": system.unit.is_depth,
     })
+}
+
+/// Whether the file says which coordinate system it is.
+fn is_named(system: &AxisSystem) -> bool {
+    system.name.is_some() || system.code.is_some()
 }
 
 fn name(system: &AxisSystem) -> String {

@@ -35,3 +35,10 @@ pub fn posts_stand_out(found: &str) -> Warning {
     );
     Warning::of_scene(WarningCode::PostsStandOut, sentence)
 }
+
+/// Warns that the posts of an elevation model lie very near each other. `found` asks what they are, without its mark.
+pub fn posts_too_dense(found: &str) -> Warning {
+    let sentence =
+        format!("{found}? A program for maps (gdalwarp -t_srs) makes a model in metres of one in degrees.");
+    Warning::of_scene(WarningCode::PostsTooDense, sentence)
+}

@@ -1,6 +1,6 @@
 //! What an elevation model and a mesh say of themselves, in words and for programs.
 
-use super::write::{Short, Text, Tiff};
+use super::write::{Double, Short, Text, Tiff};
 use super::{read, read_with};
 use raypencil_mesh_io::{
     DemOptions, FileFacts, FileFrame, FileUnits, HeightUnit, LengthUnit, NoData, UnitSource, UpAxis,
@@ -35,6 +35,37 @@ fn the_worst_spike_is_told_with_its_place() {
 }
 
 #[test]
+fn posts_that_are_nearer_than_a_survey_has_them_are_told() {
+    let of = |spacing: [f64; 2]| {
+        let [x, y] = spacing;
+        read(&Tiff::plain().tag(33550, Double(vec![x, y, 0.0])), None).unwrap().facts()
+    };
+    for spacing in [[0.01, 0.01], [0.5, 2.0]] {
+        assert_eq!((of(spacing).dense, of(spacing).dense_words()), (None, None));
+    }
+    for spacing in [[0.0001, 0.0001], [0.009, 2.0], [2.0, 0.009]] {
+        assert_eq!(of(spacing).dense, Some(spacing));
+        let [x, y] = spacing;
+        let words = format!(
+            "the posts are {x} x {y} m apart: are the coordinates degrees, which are taken as metres?"
+        );
+        assert_eq!(of(spacing).lines().last().unwrap(), &("warning", words));
+    }
+}
+
+#[test]
+fn systems_that_the_file_does_not_name_are_said_once() {
+    let keys = |more: &[u16]| [&[1, 1, 0, 1 + more.len() as u16 / 4, 1025, 0, 1, 1], more].concat();
+    let words = |more: &[u16]| {
+        let dem = read(&Tiff::plain().tag(34735, Short(keys(more))), None).unwrap();
+        FileFacts::from(dem.facts()).units.unwrap().words()
+    };
+    assert!(words(&[]).ends_with("; the file names no coordinate system"), "{}", words(&[]));
+    let map = words(&[3072, 0, 1, 32633]);
+    assert!(map.contains("32633") && map.ends_with("; the file names no system of the heights"), "{map}");
+}
+
+#[test]
 fn units_are_told_with_what_says_them() {
     let words =
         [UnitSource::System, UnitSource::Key, UnitSource::Option, UnitSource::Default].map(UnitSource::word);
@@ -46,7 +77,7 @@ fn units_are_told_with_what_says_them() {
     let units = facts.units.unwrap();
     assert_eq!(
         units.words(),
-        format!("map in {by_default}, heights in {by_default}; the file does not say; the file does not say")
+        format!("map in {by_default}, heights in {by_default}; the file names no coordinate system")
     );
     assert_eq!(units.to_json()["map"]["unit_from"], json!("default"));
     assert_eq!(units.lines()[1], ("unit", by_default.to_string()));

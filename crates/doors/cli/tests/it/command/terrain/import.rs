@@ -301,6 +301,34 @@ fn a_constant_that_nobody_declared_is_refused_wherever_a_model_is_read() {
 }
 
 #[test]
+fn degrees_that_are_taken_as_metres_are_warned_of() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let path = folder.path();
+    let mut file = geotiff(5, 4, &[7.0; 20]);
+    // The distances of the posts stand behind the heights.
+    let scale_at = 8 + 4 * 20;
+    for at in [scale_at, scale_at + 8] {
+        assert_eq!(file[at..at + 8], 2.0_f64.to_le_bytes());
+        file[at..at + 8].copy_from_slice(&0.0003_f64.to_le_bytes());
+    }
+    std::fs::write(path.join("degrees.tif"), file).expect("a file");
+    let question =
+        "the posts are 0.0003 x 0.0003 m apart: are the coordinates degrees, which are taken as metres?";
+    let imported = screen(path, &["terrain", "import", "degrees.tif", "-o", "x.glb"], 0);
+    assert!(imported.contains(question), "{imported}");
+    let out = raypencil(path, &["validate", "degrees.tif", "-o", "out"]);
+    let said = String::from_utf8_lossy(&out.stdout);
+    // The screen breaks lines.
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains(question), "{said}");
+    let summary = std::fs::read(path.join("out/summary.json")).expect("a summary");
+    let summary: Value = serde_json::from_slice(&summary).expect("JSON");
+    let codes: Vec<&Value> =
+        summary["warnings"].as_array().expect("a list").iter().map(|one| &one["code"]).collect();
+    assert!(codes.contains(&&Value::from("posts_too_dense")), "{codes:?}");
+}
+
+#[test]
 fn a_scene_on_a_model_says_what_its_file_says() {
     let folder = TempDir::new().expect("a temporary folder");
     let path = folder.path();
