@@ -139,8 +139,12 @@ impl<'a> Buffers<'a> {
         if relative.contains([':', '\\', '\0']) {
             return Err(refuse("has a scheme, a drive or a backslash"));
         }
-        if relative.is_empty() || relative.split('/').any(|part| part.is_empty() || part == "..") {
-            return Err(refuse("is absolute, leads out of the folder or names no file"));
+        // Also where it comes back into the folder: what `..` means depends on links.
+        if relative.split('/').any(|part| part == "..") {
+            return Err(refuse("has the part .., which is refused"));
+        }
+        if relative.is_empty() || relative.split('/').any(str::is_empty) {
+            return Err(refuse("is absolute or names no file"));
         }
         let path = self.folder.join(PathBuf::from(&relative));
         // A symbolic link may lead out of the folder where the name does not.

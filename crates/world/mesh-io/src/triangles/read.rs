@@ -207,6 +207,12 @@ pub(crate) fn format(bytes: &[u8], file: &Path) -> Result<Format, Fault> {
             let expected = "two files whose names end with vertices.npy and faces.npy";
             Err(Fault::new("first bytes", "a single NPY file", expected))
         }
+        // Solids with curved faces, which programs for meshes do not read.
+        (_, Some(ending @ ("step" | "stp" | "iges" | "igs"))) => {
+            let expected =
+                "GLB, glTF, STL, OBJ or PLY, to which a CAD program such as FreeCAD exports it (STL)";
+            Err(Fault::new("format", format!("a solid as .{ending}"), expected))
+        }
         (_, Some(ending)) if OTHER_MESH_ENDINGS.contains(&ending) => {
             let expected = "GLB, glTF, STL, OBJ or PLY, to which `assimp export` or Blender converts it";
             Err(Fault::new("format", format!("a mesh as .{ending}"), expected))

@@ -174,13 +174,11 @@ fn buffers_in_data_uris_and_files() {
     std::fs::write(outside.path().join("secret.bin"), &bin).unwrap();
     let name = outside.path().file_name().unwrap().to_str().unwrap();
     for (uri, why) in [
-        (format!("../{name}/secret.bin"), "is absolute, leads out of the folder or names no file"),
-        (format!("below/../../{name}/secret.bin"), "is absolute, leads out of the folder or names no file"),
-        (format!("%2e%2e/{name}/secret.bin"), "is absolute, leads out of the folder or names no file"),
-        (
-            outside.path().join("secret.bin").to_str().unwrap().to_string(),
-            "is absolute, leads out of the folder or names no file",
-        ),
+        (format!("../{name}/secret.bin"), "has the part .., which is refused"),
+        ("below/../a b.bin".into(), "has the part .., which is refused"),
+        (format!("below/../../{name}/secret.bin"), "has the part .., which is refused"),
+        (format!("%2e%2e/{name}/secret.bin"), "has the part .., which is refused"),
+        (outside.path().join("secret.bin").to_str().unwrap().to_string(), "is absolute or names no file"),
         ("file:///secret.bin".into(), "has a scheme, a drive or a backslash"),
         ("https://example.org/x.bin".into(), "has a scheme, a drive or a backslash"),
         ("C:\\x.bin".into(), "has a scheme, a drive or a backslash"),
@@ -188,7 +186,7 @@ fn buffers_in_data_uris_and_files() {
         ("a%2".into(), "has a broken % escape"),
         ("a%zz".into(), "has a broken % escape"),
         ("a%ff".into(), "has a broken % escape"),
-        (String::new(), "is absolute, leads out of the folder or names no file"),
+        (String::new(), "is absolute or names no file"),
         ("no.bin".into(), "does not exist"),
         ("below".into(), "cannot be read: not a regular file"),
     ] {

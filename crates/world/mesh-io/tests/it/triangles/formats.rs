@@ -336,6 +336,11 @@ fn contents_decide_before_the_ending() {
     refused("a.3d", b"v 0", &format!("first bytes: [76, 20, 30]; expected {expected}"));
     let expected = "GLB, glTF, STL, OBJ or PLY, to which `assimp export` or Blender converts it";
     refused("a.off", b"OFF\n3 1 0\n", &format!("format: a mesh as .off; expected {expected}"));
+    let by_cad = "GLB, glTF, STL, OBJ or PLY, to which a CAD program such as FreeCAD exports it (STL)";
+    for ending in ["step", "stp", "iges", "igs"] {
+        let message = format!("format: a solid as .{ending}; expected {by_cad}");
+        refused(&format!("a.{ending}"), b"ISO-10303-21;\n", &message);
+    }
     refused("a.FBX", b"Kaydara FBX Binary", &format!("format: a mesh as .fbx; expected {expected}"));
     let expected = "a mesh, which `raypencil terrain import` makes of an elevation model";
     refused("a.tif", b"II*\0....", &format!("first bytes: a TIFF; expected {expected}"))
