@@ -376,7 +376,7 @@ fn what_is_no_ray_set_is_refused_with_its_place() {
         ),
         (
             "spinning = { elevations_deg = [1], firing_times_us = [2e6], steps = 4 }",
-            "r.toml:3:12: `rays 0.spinning.channels[0].firing` is 2; expected 0 to 0.025 s",
+            "r.toml:3:12: `rays 0.spinning.firing_times_us[0]` is 2000000; expected 0 to 25000 us",
         ),
         (
             "spinning = { elevations_deg = [1] }",
@@ -405,7 +405,7 @@ fn what_is_no_ray_set_is_refused_with_its_place() {
         ),
         (
             "spinning = { preset = \"vlp-16\", min_range_m = 200 }",
-            "r.toml:3:12: `rays 0.spinning.max_range` is 100; expected 200 to 1000000000 m",
+            "r.toml:3:12: `rays 0.spinning.max_range_m` is 100; expected 200 to 1000000000 m",
         ),
         (
             "grid = { columns = 3, rows = 2, width_deg = 60 }",
@@ -414,7 +414,15 @@ fn what_is_no_ray_set_is_refused_with_its_place() {
         ),
         (
             "grid = { columns = 3, rows = 2, width_deg = 180, height_deg = 9, spacing = \"tangent\" }",
-            "r.toml:3:8: `rays 0.grid.width` is 180; expected 0 to 179.9 degrees",
+            "r.toml:3:8: `rays 0.grid.width_deg` is 180; expected 0 to 179.9 degrees",
+        ),
+        (
+            "grid = { columns = 3, rows = 2, width_deg = 60, height_deg = 180, spacing = \"tangent\" }",
+            "r.toml:3:8: `rays 0.grid.height_deg` is 180; expected 0 to 179.9 degrees",
+        ),
+        (
+            "grid = { columns = 3, rows = 2, width_deg = 60, height_deg = 9, min_range_m = 3, max_range_m = 1 }",
+            "r.toml:3:8: `rays 0.grid.max_range_m` is 1; expected 3 to 1000000000 m",
         ),
         (
             "grid = { columns = 20000, rows = 20000, width_deg = 60, height_deg = 60 }",

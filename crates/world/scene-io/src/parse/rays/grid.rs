@@ -7,6 +7,7 @@ use toml::Spanned;
 use raypencil_scene::pattern::{GRID_PRESETS, Grid, Spacing};
 
 use crate::parse::key::Key;
+use crate::parse::rays::keys::in_keys;
 use crate::parse::source::Source;
 use crate::scene_error::SceneIoError;
 
@@ -70,7 +71,7 @@ impl Source<'_> {
         self.choice(&keys.spacing, &key("spacing"), &mut grid.spacing, &words)?;
         self.number(&keys.min_range_m, &key("min_range_m"), &mut grid.min_range_m, RANGE_M, "metres")?;
         self.number(&keys.max_range_m, &key("max_range_m"), &mut grid.max_range_m, RANGE_M, "metres")?;
-        grid.validate(name).map_err(|error| self.refused(table.span(), &error))?;
+        grid.validate(name).map_err(|error| self.refused(table.span(), &in_keys(error)))?;
         Ok(grid)
     }
 }

@@ -3,6 +3,7 @@
 mod angles;
 mod cone;
 mod grid;
+mod keys;
 mod mount;
 mod pattern;
 mod spinning;

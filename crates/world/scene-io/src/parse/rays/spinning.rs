@@ -8,6 +8,7 @@ use raypencil_scene::pattern::{Channel, SPINNING_PRESETS, Spinning};
 
 use crate::parse::key::{Key, span};
 use crate::parse::rays::grid::{COUNT, RANGE_M};
+use crate::parse::rays::keys::in_keys;
 use crate::parse::source::Source;
 use crate::scene_error::SceneIoError;
 
@@ -89,7 +90,7 @@ impl Source<'_> {
         self.steps(name, table, rate, &mut head)?;
         self.number(&keys.min_range_m, &key("min_range_m"), &mut head.min_range_m, RANGE_M, "metres")?;
         self.number(&keys.max_range_m, &key("max_range_m"), &mut head.max_range_m, RANGE_M, "metres")?;
-        head.validate(name).map_err(|error| self.refused(table.span(), &error))?;
+        head.validate(name).map_err(|error| self.refused(table.span(), &in_keys(error)))?;
         Ok(head)
     }
 
