@@ -9,7 +9,7 @@ use raypencil::drive::{
     self, DriveExtras, DriveJob, DriveProgress, RecordContents, StripeFile, drive_document, drive_renderer,
     write_drive,
 };
-use raypencil::io::{DriveSetup, WaypointFrame, load};
+use raypencil::io::{DriveSetup, Overrides, WaypointFrame, load};
 
 use crate::args::{self, typed_renderers};
 use crate::console::{Spinner, progress_bar, say};
@@ -58,7 +58,8 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
     let contenders = contenders(&names, &command.switches, 1, registry)?;
     let spinner = Spinner::new();
     spinner.stage(&format!("{}: loading", command.scene.scene));
-    let mut loaded = load(&command.scene.scene, &command.scene.overrides())?;
+    let overrides = Overrides { for_drive: true, ..command.scene.overrides() };
+    let mut loaded = load(&command.scene.scene, &overrides)?;
     memory::ask_drive(&loaded.scene, loaded.drive.as_ref().map_or(1, |drive| drive.optics.oversampling))?;
     let mut arguments = command.scene.typed();
     if !command.to.is_empty() {

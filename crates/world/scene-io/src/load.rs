@@ -297,17 +297,23 @@ fn load_rig(
     finish(source, plan, parts, ground, overrides).map_err(|error| match error {
         // A vehicle off the ground is the fault of a line in the file, unless the command line put it there.
         SceneIoError::NoGround { x, y, ground, .. } if overrides.at.is_none() => {
-            no_ground(file, position_span, [x, y], &ground)
+            no_ground(file, position_span, [x, y], &ground, overrides.for_drive)
         }
         other => other,
     })
 }
 
 /// The error of a vehicle that should stand where there is no ground.
-pub(crate) fn no_ground(file: &Source, span: Range<usize>, [x, y]: [f64; 2], ground: &str) -> SceneIoError {
+pub(crate) fn no_ground(
+    file: &Source,
+    span: Range<usize>,
+    [x, y]: [f64; 2],
+    ground: &str,
+    for_drive: bool,
+) -> SceneIoError {
+    let or_height = if for_drive { "" } else { ", or a height as the third number" };
     let message = format!(
-        "`vehicle.position_m`: no ground under ({x}, {y}); expected a place within {ground}, or a height as the \
-         third number"
+        "`vehicle.position_m`: no ground under ({x}, {y}); expected a place within {ground}{or_height}"
     );
     file.error(span, message)
 }

@@ -34,12 +34,14 @@ pub struct Overrides {
     pub flux_model: Option<FluxModel>,
     /// Keys of the scene file, set before it is read; the numbers above come after them.
     pub settings: Vec<Setting>,
+    /// The scene is for a drive, which needs ground where the vehicle stands: an error does not offer a height in its place.
+    pub for_drive: bool,
 }
 
 impl Overrides {
     /// The changes in words, for digests; `None`: there are none beside settings, which are part of the scene's text.
     pub(crate) fn words(&self) -> Option<String> {
-        let Self { at, heading_deg, fan_deg, thickness_mm, flux_model, settings: _ } = self;
+        let Self { at, heading_deg, fan_deg, thickness_mm, flux_model, settings: _, for_drive: _ } = self;
         let changed = at.is_some()
             || flux_model.is_some()
             || [heading_deg, fan_deg, thickness_mm].iter().any(|number| number.is_some());

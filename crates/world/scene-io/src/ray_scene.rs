@@ -117,7 +117,7 @@ fn stood(file: &Source, plan: &ScenePlan, mesh: &Mesh) -> Result<Pose, SceneIoEr
     let [x, y] = plan.vehicle.position;
     plan.vehicle
         .global_from_vehicle(mesh)
-        .ok_or_else(|| no_ground(file, plan.position_span.clone(), [x, y], &extent(mesh)))
+        .ok_or_else(|| no_ground(file, plan.position_span.clone(), [x, y], &extent(mesh), false))
 }
 
 /// The same terrain in `f32` offsets: only the height under the vehicle is taken from it.

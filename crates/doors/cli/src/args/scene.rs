@@ -50,6 +50,7 @@ impl SceneArguments {
             thickness_mm: self.thickness,
             flux_model: self.flux,
             settings: self.settings.clone(),
+            for_drive: false,
         }
     }
 

@@ -162,6 +162,12 @@ fn errors_leave_no_folder_that_looks_complete() {
         &raypencil(path, &["drive", "small.toml", "--at", "100,0"]),
         &["no ground under the vehicle"],
     );
+    // A height would put the vehicle above the ground that is missing, and a drive needs ground.
+    let off = raypencil(path, &["drive", "small.toml", "--set", "vehicle.position_m=[100,0]"]);
+    assert_trouble(&off, &["no ground under (100, 0); expected a place within x"]);
+    assert!(!String::from_utf8_lossy(&off.stderr).contains("third number"));
+    let off = raypencil(path, &["validate", "small.toml", "--set", "vehicle.position_m=[100,0]"]);
+    assert_trouble(&off, &["no ground under (100, 0)", "or a height as the third number"]);
     assert_trouble(
         &raypencil(path, &["drive", "small.toml", "--with", "nobody"]),
         &["there is no such renderer"],
