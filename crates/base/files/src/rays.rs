@@ -244,6 +244,9 @@ fn of_csv(bytes: &[u8], file: &Path) -> Result<RayArray, FileError> {
             };
             return refuse(found, ROW.into());
         }
+        if record.len() == 1 && has_number(&record[0]) && record[0].parse::<f64>().is_err() {
+            return refuse("no comma between its numbers".into(), ROW.into());
+        }
         if let Some((first, of_line)) = width
             && first != record.len()
         {

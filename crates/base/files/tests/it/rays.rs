@@ -140,6 +140,10 @@ fn each_wrong_file_is_told_where_it_is_wrong() {
             "rays: line 5: 8 fields; expected 6, as line 3 has",
         ),
         (b"0;0;0;0;0;1\n".to_vec(), "rays: line 1: no comma between its numbers; expected 6 numbers"),
+        (
+            b"# ox oy oz dx dy dz\n0 0 0 0 0 1\n".to_vec(),
+            "rays: line 2: no comma between its numbers; expected 6 numbers",
+        ),
         (b"0 0 0 0 0 1\n".to_vec(), "rays: line 1: no comma between its numbers; expected 6 numbers"),
         (b"0\t0\t0\t0\t0\t1\n".to_vec(), "rays: line 1: no comma between its numbers; expected 6 numbers"),
         (b"ox,oy,oz,dx,dy,dz\n0,0,0,0,0,1,0,1".to_vec(), "rays: line 2: 8 fields; expected 6, as line 1 has"),
