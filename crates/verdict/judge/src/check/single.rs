@@ -46,8 +46,18 @@ pub struct CheckedItem {
     pub difference_unit: &'static str,
     /// Ratio of the error to its bound, held to the face that is judged; `None` without numbers.
     pub ratio: Option<f64>,
+    /// Whether the error of that ratio is the difference. It is another one where the answer is judged against another face than the
+    /// exact one, or by its own visibility.
+    pub is_ratio_of_difference: bool,
     /// The class; `None` if the item was not compared.
     pub class: Option<Class>,
+}
+
+/// Whether two errors are one, but for the rounding of its computation. Without numbers there is none to take for another.
+fn is_same_error(difference: Option<f64>, judged: Option<f64>) -> bool {
+    let (Some(difference), Some(judged)) = (difference, judged) else { return true };
+    // As many digits as are shown.
+    difference == judged || (difference.abs() - judged.abs()).abs() <= 1e-3 * difference.abs()
 }
 
 /// Judges one ray of a recording as [`crate::check()`] does, without the exact answers to all others. `None`: the scene
@@ -115,9 +125,12 @@ pub fn check_ray_against(truth: &GroundTruth<'_>, recorded: &Recorded, place: Pl
         // The ranges of one face are no difference of the face.
         let is_range_of_face =
             matches!(item.quantity, Quantity::Hit | Quantity::Face) && class == Some(Class::Agree);
+        let difference = said.as_ref().filter(|_| !is_range_of_face).and_then(|said| said.distance(&exact));
+        let judged = tally.worst_error.as_ref().map(|largest| largest.value);
         Some(CheckedItem {
             item,
-            difference: said.as_ref().filter(|_| !is_range_of_face).and_then(|said| said.distance(&exact)),
+            difference,
+            is_ratio_of_difference: is_same_error(difference, judged),
             difference_unit: difference_unit(model, item),
             said: said.map(|said| said.words),
             truth: exact.words,

@@ -27,7 +27,7 @@ impl CheckedRay {
                 let space = if unit.is_empty() { "" } else { " " };
                 let _ = write!(text, ", off by {difference:.3e}{space}{unit}");
             }
-            if let Some(ratio) = of.ratio.filter(|ratio| *ratio != 0.0) {
+            if let Some(ratio) = of.ratio.filter(|ratio| *ratio != 0.0 && of.is_ratio_of_difference) {
                 let _ = write!(text, ", {ratio:.2e} times its bound");
             }
             let without_class = match of.item.quantity {

@@ -73,3 +73,29 @@ fn flux_that_follows_from_a_wrong_visibility_is_said_to() {
     assert_eq!(hidden.matches(": agrees with its own visibility").count(), 1, "{hidden}");
     assert_eq!(hidden.matches(": defect\n").count(), 1, "{hidden}");
 }
+
+#[test]
+fn a_part_of_a_bound_is_told_of_the_error_that_is_shown_alone() {
+    let scene = walls(FluxModel::Radiometric);
+    let mut output = exact(&scene);
+    let (seen, flux) =
+        (returns(&mut output).visible.clone().unwrap(), returns(&mut output).flux.clone().unwrap());
+    let (i, j) = (0..seen.height())
+        .flat_map(|j| (0..seen.width()).map(move |i| (i, j)))
+        .find(|(i, j)| seen.at(*i, *j) && flux.at(*i, *j) > 0.0)
+        .expect("a pencil that is seen");
+    let line_of = |output: &RenderOutput| {
+        let recorded = Recorded::of_output("mine", &scene, output, Precision::F64);
+        let place = Place { sensor: SensorId::Beam(0), i, j };
+        let text = check_ray(&scene, &recorded, place).unwrap().text("mine");
+        text.lines().find(|line| line.contains("pencil flux: says")).expect("the flux").to_string()
+    };
+    returns(&mut output).flux.as_mut().unwrap().set(i, j, 2.0 * flux.at(i, j));
+    let twice = line_of(&output);
+    assert!(twice.contains(", off by ") && twice.contains(" times its bound"), "{twice}");
+    // Hidden by its own word, where no flux is right: what is judged is a thousandth of what is shown.
+    returns(&mut output).visible.as_mut().unwrap().set(i, j, false);
+    returns(&mut output).flux.as_mut().unwrap().set(i, j, 0.001 * flux.at(i, j));
+    let hidden = line_of(&output);
+    assert!(hidden.contains(", off by ") && !hidden.contains("times its bound"), "{hidden}");
+}
