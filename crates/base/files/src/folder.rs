@@ -66,6 +66,12 @@ pub enum FolderError {
         /// Path of the folder.
         folder: PathBuf,
     },
+    /// A file that the run reads has the name of one that it writes.
+    #[error("{}: this run reads it, and would replace it by a file of its own; expected another output folder", path.display())]
+    ReplacesInput {
+        /// Path of what is read.
+        path: PathBuf,
+    },
     /// One of the files could not be written; the message names it.
     #[error(transparent)]
     File(#[from] FileError),

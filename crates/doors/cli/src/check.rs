@@ -1,5 +1,7 @@
 //! `raypencil check`: another program's answers against a reference pack.
 
+use std::path::Path;
+
 use raypencil::cast::{CloudChoice, CloudConventions, is_bag_of_clouds, no_cloud};
 use raypencil::harness::{check_any_pack, pack_form};
 use raypencil::io::OutputFolder;
@@ -17,9 +19,18 @@ pub(crate) fn check(command: &Check, json: bool) -> Result<Outcome, Trouble> {
         }
         None => None,
     };
+    if let Some(folder) = command.output.as_ref().filter(|folder| is_same(folder, &command.candidate)) {
+        let text = "is the folder of the answers to check; expected another folder";
+        return Err(Trouble::Usage(format!("--output {}: {text}", folder.display())));
+    }
     let outcome = checked(command, json)?;
     output.map_or(Ok(()), OutputFolder::finish)?;
     Ok(outcome)
+}
+
+/// Whether two paths are one folder or file.
+fn is_same(a: &Path, b: &Path) -> bool {
+    a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b))
 }
 
 fn checked(command: &Check, json: bool) -> Result<Outcome, Trouble> {

@@ -51,6 +51,7 @@ mod parsers;
 mod probe;
 mod reference;
 mod render;
+mod replaced;
 mod scene;
 mod subject;
 mod sweep;

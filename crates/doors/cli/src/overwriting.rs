@@ -8,6 +8,8 @@ use std::path::Path;
 use raypencil::io::{FolderError, OutputFolder, bytes, harmless_line, subject_of};
 use serde_json::Value;
 
+use crate::replaced::{self, Writes};
+
 thread_local! {
     /// Whether `--force` was given. Of this thread: it begins the command's folders, and each command has threads of its own, also
     /// where several are called as functions at once.
@@ -51,7 +53,11 @@ pub fn output_folder(
         return Err(FolderError::IsOfOther { path: folder.to_path_buf(), of: parts.to_string() });
     }
     let output = OutputFolder::begin_of(folder, &results(command, of), is_forced())?;
-    output.refuse_inputs(&[inputs, &[Path::new(of)]].concat())?;
+    let inputs = [inputs, &[Path::new(of)]].concat();
+    output.refuse_inputs(&inputs)?;
+    if let Some(writes) = Writes::of_command(command, &inputs) {
+        replaced::ask(folder, writes, &inputs)?;
+    }
     Ok(output)
 }
 
@@ -127,18 +133,21 @@ fn ask_parts(folder: &Path, is_same: impl Fn(&Parts) -> bool) -> Result<(), Fold
     }
 }
 
-/// Refuses to write a pack over what it is made of, such as the scene of a pack.
+/// Refuses to write a pack over what it is made of, such as the scene of a pack. `is_of_rays`: it is a pack of rays.
 ///
 /// # Errors
-/// [`FolderError::IsInput`], with the first of them.
-pub fn ask_pack_inputs(folder: &Path, inputs: &[&Path]) -> Result<(), FolderError> {
+/// [`FolderError::IsInput`] or [`FolderError::ReplacesInput`], with the first of them.
+pub fn ask_pack_inputs(folder: &Path, is_of_rays: bool, inputs: &[&Path]) -> Result<(), FolderError> {
     let Ok(whole) = folder.canonicalize() else { return Ok(()) };
     let is_within = |input: &&&Path| input.canonicalize().is_ok_and(|path| path.starts_with(&whole));
     let is_pack =
         ["manifest.json", "raypack.json", "input.json"].iter().any(|name| folder.join(name).exists());
     match inputs.iter().find(is_within).filter(|_| is_pack) {
         Some(path) => Err(FolderError::IsInput { path: path.to_path_buf(), folder: folder.to_path_buf() }),
-        None => Ok(()),
+        None => {
+            let writes = if is_of_rays { Writes::RayPack } else { Writes::ScenePack };
+            replaced::ask(folder, writes, inputs)
+        }
     }
 }
 

@@ -24,7 +24,11 @@ use crate::{Outcome, Trouble, memory};
 
 pub(crate) fn pack(command: &Pack, json: bool) -> Result<Outcome, Trouble> {
     let rays = command.rays.as_deref();
-    ask_pack_inputs(&command.output, &[&[Path::new(&command.scene.scene)], rays.as_slice()].concat())?;
+    ask_pack_inputs(
+        &command.output,
+        rays.is_some(),
+        &[&[Path::new(&command.scene.scene)], rays.as_slice()].concat(),
+    )?;
     // No list of files is left in a pack: its manifest is one.
     let output = OutputFolder::begin_any(&command.output)?;
     let outcome = packed_into(command, json)?;

@@ -30,7 +30,8 @@ fn into_pack<T>(
     write: impl FnOnce() -> Result<T, Failure>,
 ) -> Result<T, Failure> {
     overwriting::begin(force);
-    ask_pack_inputs(folder, inputs).map_err(failure)?;
+    let is_of_rays = packs.iter().any(|(_, of)| matches!(of, PackOf::Mesh(_)));
+    ask_pack_inputs(folder, is_of_rays, inputs).map_err(failure)?;
     let begun = OutputFolder::begin_any(folder).map_err(failure)?;
     for (folder, of) in packs {
         ask_pack(folder, *of).map_err(failure)?;

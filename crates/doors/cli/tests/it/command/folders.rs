@@ -27,6 +27,82 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 #[test]
+fn no_command_replaces_a_file_that_it_reads() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let write = |name: &str, text: &str| fs::write(at.join(name), text).unwrap();
+    for inner in ["u", "w", "mesh", "set", "mine"] {
+        fs::create_dir(at.join(inner)).unwrap();
+    }
+    write("floor.obj", "v -4 -4 0\nv 4 -4 0\nv 4 4 0\nv -4 4 0\nf 1 2 3\nf 1 3 4\n");
+    write("rays.csv", "1,0.5,3,0,0,-2\n-1,0.25,3,0.125,0,-2\n9,0,3,0,0,-1\n");
+    write("set/set.toml", "[[rays]]\nname = \"a\"\nfile = \"../u/point.npy\"\n");
+    screen(at, &["pack", "floor.obj", "--rays", "rays.csv", "-o", "pack"], 0);
+    fs::copy(at.join("pack/rays.npy"), at.join("u/point.npy")).unwrap();
+    fs::copy(at.join("pack/rays.npy"), at.join("w/rays.npy")).unwrap();
+    fs::copy(at.join("pack/t.npy"), at.join("mine/t.npy")).unwrap();
+    for name in ["vertices.npy", "faces.npy"] {
+        fs::copy(at.join("pack").join(name), at.join("mesh").join(name)).unwrap();
+    }
+    let mesh = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+                element face 1\nproperty list uchar int vertex_indices\nend_header\n-4 -4 0\n4 -4 0\n4 4 0\n3 0 1 2\n";
+    write("set/cloud.ply", mesh);
+    for (line, read) in [
+        (&["cast", "floor.obj", "u/point.npy", "-o", "u"][..], "u/point.npy"),
+        (&["cast", "floor.obj", "u/point.npy", "-o", "u", "--force"], "u/point.npy"),
+        (&["cast", "set/cloud.ply", "set/set.toml", "-o", "set"], "set/cloud.ply"),
+        (&["pack", "floor.obj", "--rays", "w/rays.npy", "-o", "w"], "w/rays.npy"),
+        (&["pack", "mesh", "--rays", "rays.csv", "-o", "mesh"], "mesh/vertices.npy"),
+    ] {
+        let before = fs::read(at.join(read)).unwrap();
+        let words = ["this run reads it", "expected another output folder"];
+        assert_trouble(&raypencil(at, line), &[&[read][..], &words].concat());
+        assert_eq!(fs::read(at.join(read)).unwrap(), before, "{line:?}");
+    }
+    // What has another name than all that is written stays beside it.
+    screen(at, &["cast", "set/cloud.ply", "u/point.npy", "-o", "set"], 0);
+    screen(at, &["cast", "floor.obj", "w/rays.npy", "-o", "w"], 0);
+    // A report among answers would be taken for one of them by the next check.
+    let own = ["--output mine: is the folder of the answers to check; expected another folder"];
+    assert_trouble(&raypencil(at, &["check", "pack", "mine", "-o", "mine"]), &own);
+    assert_eq!(names(&at.join("mine")), ["t.npy"]);
+}
+
+#[test]
+fn all_arrays_that_cast_and_pack_write_are_known_as_theirs() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    fs::write(at.join("floor.obj"), "v -4 -4 0\nv 4 -4 0\nv 4 4 0\nv -4 4 0\nf 1 2 3\nf 1 3 4\n").unwrap();
+    fs::write(at.join("rays.csv"), "1,0.5,3,0,0,-2\n9,0,3,0,0,-1\n").unwrap();
+    let head = "spinning = { elevations_deg = [-40, -50], steps = 3 }";
+    let cone = format!(
+        "cone = {{ of = {{ {head} }}, divergence_mrad = 9, rings = 1, returns = {{ keep = 2, separation_m = 1 }} }}"
+    );
+    fs::write(at.join("set.toml"), format!("[[rays]]\nname = \"a\"\n{cone}\nposition_m = [0, 0, 2]\n"))
+        .unwrap();
+    let questions = ["--any", "--all", "--margins", "--with", "tracer"];
+    screen(at, &[&["cast", "floor.obj", "rays.csv", "-o", "answers"][..], &questions].concat(), 0);
+    screen(at, &["pack", "floor.obj", "--rays", "rays.csv", "-o", "rays"], 0);
+    screen(at, &["pack", "floor.obj", "--rays", "set.toml", "-o", "scan"], 0);
+    fs::create_dir(at.join("own")).unwrap();
+    for (made, command) in [("answers", "cast"), ("rays", "pack"), ("scan", "pack")] {
+        let arrays: Vec<String> =
+            names(&at.join(made)).into_iter().filter(|name| name.ends_with(".npy")).collect();
+        assert!(arrays.len() > 15, "{arrays:?}");
+        for name in arrays {
+            let own = format!("own/{name}");
+            fs::copy(at.join("rays/rays.npy"), at.join(&own)).unwrap();
+            let line = match command {
+                "cast" => ["cast", "floor.obj", &own, "-o", "own"].to_vec(),
+                _ => ["pack", "floor.obj", "--rays", &own, "-o", "own"].to_vec(),
+            };
+            assert_trouble(&raypencil(at, &line), &[&own, "this run reads it"]);
+            fs::remove_file(at.join(&own)).unwrap();
+        }
+    }
+}
+
+#[test]
 fn a_run_leaves_nothing_of_an_earlier_one_and_all_of_others() {
     let folder = TempDir::new().unwrap();
     let folder = folder.path();
