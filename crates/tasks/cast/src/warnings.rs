@@ -271,12 +271,14 @@ impl<'a> Misses<'a> {
         let (first, last) = origins.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), origin| {
             (low.min(origin), high.max(origin))
         });
+        let (reach, begin) = match self.rays.len() {
+            1 => ("it reaches", format!("the ray begins at {}", place(first))),
+            _ => ("they reach", format!("the rays begin between {} and {}", place(first), place(last))),
+        };
         Some(format!(
-            "{none}, however far they reach. It lies between {} and {}, and the rays begin between {} and {}{}",
+            "{none}, however far {reach}. It lies between {} and {}, and {begin}{}",
             place(low),
             place(high),
-            place(first),
-            place(last),
             self.question()
         ))
     }

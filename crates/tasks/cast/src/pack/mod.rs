@@ -26,6 +26,7 @@ mod check;
 mod clouds;
 mod decimals;
 mod explain;
+mod hits_alone;
 mod kept_answers;
 mod lengths;
 mod mistakes;

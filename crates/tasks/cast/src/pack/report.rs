@@ -105,6 +105,7 @@ impl RayPackChecked {
         if !self.unread.is_empty() {
             notes.push(format!("Not read, for no array has that name: {}.", self.unread.join(", ")));
         }
+        notes.extend(self.absent_note());
         let Some(cloud) = &self.cloud else {
             let halves: Vec<&str> = self.stated.stored.coarse.iter().map(|(value, _)| value.name()).collect();
             if !halves.is_empty() {
@@ -113,7 +114,8 @@ impl RayPackChecked {
             return notes;
         };
         let range = cloud.has_range.then_some("range");
-        let fields: Vec<&str> = cloud.keys.iter().map(String::as_str).chain(range).collect();
+        let fields: Vec<&str> =
+            cloud.keys.iter().chain(&cloud.number_field).map(String::as_str).chain(range).collect();
         let fields = match fields[..] {
             [] => String::new(),
             [one] => format!(", and the field {one}"),
@@ -190,8 +192,12 @@ impl RayPackChecked {
         notes
     }
 
-    /// What is wrong with a cloud, if it is more than wrong rays: a point of no ray is no ray.
+    /// What is wrong with a cloud, if it is more than wrong rays: a point of no ray is no ray. Of answers that say only which rays hit,
+    /// that no more is known: a right hit alone is no exact answer.
     fn headline(&self) -> Option<String> {
+        if let Some(sentence) = self.hits_alone() {
+            return Some(sentence);
+        }
         let cloud = self.cloud.as_ref()?;
         let wrong = self.comparison.counts().wrong;
         let rays = count(self.comparison.verdicts.len() as u64);
@@ -285,6 +291,7 @@ impl RayPackChecked {
                 ..hits.clone()
             }
         });
+        let absent = self.absent(&hits);
         // What else a cloud states: the ray of each point.
         let of_cloud = |key: &str, name: &str, agree: u64, wrong: u64| {
             let mut by_class = [0; Class::COUNT];
@@ -314,6 +321,7 @@ impl RayPackChecked {
             ruled: counts.rounding + counts.wrong,
             items: std::iter::once(hits.clone())
                 .chain(values)
+                .chain(absent)
                 .chain(of_keys)
                 .chain(of_numbers)
                 .chain(of_strays)

@@ -90,7 +90,7 @@ fn another_unit_or_axis_is_asked_about_only_where_it_lets_rays_hit() {
     assert!(below[0].1.ends_with("the nearest at 2.00 where the limit is 1.00."), "{below:?}");
     // With y up, the floor is x and z, and z of its file runs to -y.
     let down = |at: [f64; 3]| [ray(at, [0.0, 0.0, -1.0])];
-    let words = ["however far they reach", "is y up in the mesh's file (--up y)? 1 of 1 would hit then."];
+    let words = ["however far it reaches", "is y up in the mesh's file (--up y)? 1 of 1 would hit then."];
     let y_up = ground(30.0, [2, 0]);
     assert_one(found(&y_up, &down([5.0, -5.0, 2.0]), Sides::Both, false), WarningCode::NoHits, &words);
     let beside = found(&y_up, &down([5.0, 5.0, 2.0]), Sides::Both, false);
@@ -113,6 +113,8 @@ fn rays_beside_the_mesh_are_told_with_both_places() {
         "(0, 0, 5.00) and (2.00, 0, 7.00)",
     ];
     assert_one(found(&cube(1.0, true), &rays, Sides::Both, false), WarningCode::NoHits, &words);
+    let words = ["the ray does not hit the mesh, however far it reaches.", "the ray begins at (0, 0, 5.00)"];
+    assert_one(found(&cube(1.0, true), &rays[..1], Sides::Both, false), WarningCode::NoHits, &words);
 }
 
 #[test]

@@ -331,6 +331,10 @@ impl CheckFindings {
         let by_class = self.by_class();
         let of = |class| count(by_class[class as usize]);
         let rays = count(by_class.iter().sum());
+        let rays_agree = match by_class.iter().sum() {
+            1_u64 => "1 ray agrees".to_string(),
+            _ => format!("{rays} rays agree"),
+        };
         match self.verdict() {
             _ if self.headline.is_some() => self.headline.clone().unwrap_or_default(),
             "agrees" => {
@@ -347,12 +351,12 @@ impl CheckFindings {
                         let words =
                             if self.totals.iter().all(is_exact) { "exact" } else { "within rounding" };
                         format!(
-                            "{rays} rays agree with the exact answers: {agree} {words}, {tie} tie, {rounding} rounding{partial}."
+                            "{rays_agree} with the exact answers: {agree} {words}, {tie} tie, {rounding} rounding{partial}."
                         )
                     }
                     Some(coarse) => {
                         format!(
-                            "{rays} rays agree to {coarse}: {agree} agree, {tie} tie, {rounding} rounding{partial}."
+                            "{rays_agree} to {coarse}: {agree} agree, {tie} tie, {rounding} rounding{partial}."
                         )
                     }
                 }
@@ -366,7 +370,8 @@ impl CheckFindings {
                 format!("{} of {rays} rays {are} wrong{undecided}.", of(Class::Defect))
             }
             "nothing_hit" => format!(
-                "No ray of this pack, or of one of its sets, hits anything: that the candidate agrees on {rays} rays proves little."
+                "No ray of this pack, or of one of its sets, hits anything: that the candidate agrees on {} proves little.",
+                counted(by_class.iter().sum(), "ray", "rays")
             ),
             _ => "Nothing was compared.".into(),
         }

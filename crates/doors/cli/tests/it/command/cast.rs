@@ -626,6 +626,11 @@ fn returns_of_beams_are_counted_and_written() {
     fs::write(at.join("wide.toml"), set).expect("a file");
     let shown = screen(at, &["cast", "walls.obj", "wide.toml", "--bag", "ouster", "-o", "out"], 0);
     assert!(shown.contains("wide: 3 footprints: 3 have a return, 1 are mixed; 4 returns told"), "{shown}");
+    // The number of a point's return is judged, and so is it said.
+    screen(at, &["pack", "walls.obj", "--rays", "wide.toml", "-o", "pack"], 0);
+    let checked = screen(at, &["check", "pack", "out/cloud.pcd", "--frame", "mesh"], 0);
+    let judged = checked.split("Judged: ").nth(1).expect("what was judged").lines().next().expect("a line");
+    assert!(judged.split([' ', ',', '.']).any(|word| word == "return"), "{judged}");
     let summary: serde_json::Value =
         serde_json::from_str(&fs::read_to_string(at.join("out/summary.json")).expect("a summary"))
             .expect("JSON");

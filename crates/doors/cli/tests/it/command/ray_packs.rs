@@ -28,6 +28,48 @@ fn change(folder: &Path, name: &str, by: impl Fn(f64) -> f64) {
 }
 
 #[test]
+fn hits_alone_are_not_called_exact_answers() {
+    let folder = folder();
+    let at = folder.path();
+    fs::create_dir(at.join("hits")).expect("a folder");
+    let hits = |hits: &[u8]| write_npy_numbers(at.join("hits/hit.npy"), &[4], hits).expect("a file");
+    hits(&[1, 1, 0, 1]);
+    let note = "Not compared, because not given: face, t, range";
+    let said = "4 rays hit or miss as the exact answers say; nothing is known about face, t and range, which were not given.";
+    let shown = screen(at, &["check", "pack", "hits", "-o", "out"], 0);
+    assert!(shown.contains(said) && shown.contains(note) && !shown.contains(" exact, "), "{shown}");
+    let summary = fs::read_to_string(at.join("out/check.json")).expect("a summary");
+    let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
+    let told: Vec<_> = summary["bundles"][0]["quantities"].as_array().expect("a list").iter().collect();
+    let not_given =
+        |key: &str| told.iter().any(|item| item["quantity"] == key && item["not_given"] == "not given");
+    assert!(["face", "t", "range"].into_iter().all(not_given) && !not_given("hit"), "{summary:#}");
+    for file in ["report.html", "summary.md"] {
+        let text = fs::read_to_string(at.join("out").join(file)).expect("a file");
+        assert!(text.contains(said) && text.contains(note), "{file}: {text}");
+    }
+    hits(&[1, 1, 1, 1]);
+    let shown = screen(at, &["check", "pack", "hits"], 1);
+    assert!(shown.contains("1 of 4 rays is wrong") && shown.contains(note), "{shown}");
+    // With distances too, these are.
+    hits(&[1, 1, 0, 1]);
+    fs::copy(at.join("answers/t.npy"), at.join("hits/t.npy")).expect("a file");
+    let shown = screen(at, &["check", "pack", "hits"], 0);
+    assert!(shown.contains("4 rays agree with the exact answers") && !shown.contains(note), "{shown}");
+}
+
+#[test]
+fn one_ray_agrees_alone() {
+    let folder = folder();
+    let at = folder.path();
+    fs::write(at.join("one.csv"), "1,0.5,3,0,0,-2\n").expect("a file");
+    screen(at, &["pack", "floor.obj", "--rays", "one.csv", "-o", "one"], 0);
+    screen(at, &["cast", "floor.obj", "one.csv", "-o", "one-answers"], 0);
+    let shown = screen(at, &["check", "one", "one-answers"], 0);
+    assert!(shown.contains("1 ray agrees with the exact answers"), "{shown}");
+}
+
+#[test]
 fn the_note_of_answers_to_rays_is_followed() {
     let folder = folder();
     let at = folder.path();

@@ -50,6 +50,8 @@ pub struct CloudFacts {
     pub wrong_keys: Vec<usize>,
     /// What explains them.
     pub(in crate::pack) keys_why: Option<String>,
+    /// Name of the field with the number of a point's return, if it was judged.
+    pub number_field: Option<String>,
     /// Number of points whose number of a return was compared with that of their ray.
     pub(in crate::pack) numbered: usize,
     /// Indices of the rays whose points have another number of a return than that of theirs.
@@ -271,7 +273,9 @@ pub(in crate::pack) fn read_cloud_of<'a>(
     let of_numbers = of_returns.filter(|_| beams.is_some()).map(|column| &column.name);
     let is_unjudged = |name: &&String| is_key(name) && !keys.contains(name) && Some(*name) != of_numbers;
     let unjudged = cloud.columns.iter().map(|column| &column.name).filter(is_unjudged).cloned().collect();
+    let number_field = of_numbers.filter(|_| numbered > 0).cloned();
     let facts = CloudFacts {
+        number_field,
         wrong_keys,
         keys_why,
         numbered,
