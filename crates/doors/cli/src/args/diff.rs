@@ -28,23 +28,23 @@ pub(crate) struct Diff {
 
     /// Allow an absolute difference of X, in the unit of the channel. A cell passes if --fail, --fail-relative or
     /// --fail-ulp allows its difference.
-    #[arg(long, value_name = "X", default_value = "0", value_parser = threshold)]
+    #[arg(long, value_name = "X", default_value = "0", value_parser = threshold, allow_hyphen_values = true)]
     pub(crate) fail: f64,
 
     /// Allow a relative difference of X, relative to the larger of both numbers.
-    #[arg(long, value_name = "X", default_value = "0", value_parser = threshold)]
+    #[arg(long, value_name = "X", default_value = "0", value_parser = threshold, allow_hyphen_values = true)]
     pub(crate) fail_relative: f64,
 
     /// Allow a difference of N units in the last place of the file with the lower precision.
-    #[arg(long, value_name = "N", default_value = "0", value_parser = threshold)]
+    #[arg(long, value_name = "N", default_value = "0", value_parser = threshold, allow_hyphen_values = true)]
     pub(crate) fail_ulp: f64,
 
     /// Allow P percent of the cells of a channel to fail.
-    #[arg(long, value_name = "P", default_value = "0", value_parser = percent)]
+    #[arg(long, value_name = "P", default_value = "0", value_parser = percent, allow_hyphen_values = true)]
     pub(crate) fail_percent: f64,
 
     /// Fail if any cell differs by more than X, whatever the other options allow.
-    #[arg(long, value_name = "X", value_parser = threshold)]
+    #[arg(long, value_name = "X", value_parser = threshold, allow_hyphen_values = true)]
     pub(crate) hard_fail: Option<f64>,
 
     /// Ignore channels that only one side has.

@@ -1,6 +1,9 @@
 //! `raypencil terrain generate`: generates a Mars-like terrain as GLB.
 
+use std::path::Path;
+
 use raypencil::io::{FileError, read_dem, write_terrain_glb};
+use raypencil::report::counted;
 use raypencil::terrain::{Ground, MarsGround, PRESET_NAMES};
 use raypencil::{Mesh, Progress as _, SceneError};
 use serde_json::{Value, json};
@@ -33,7 +36,9 @@ pub(crate) fn generate(command: &TerrainGenerate, json: bool) -> Result<Outcome,
     ground.crevasses.count = command.crevasses.unwrap_or(ground.crevasses.count);
     if let Some(coarse) = &command.coarse {
         spinner.stage(&format!("{}: reading", coarse.display()));
-        ground.coarse = Some(read_dem(coarse, command.window)?.posts);
+        let posts = read_dem(coarse, command.window)?.posts;
+        ask_known(coarse, &posts.heights)?;
+        ground.coarse = Some(posts);
     }
     spinner.stage(&format!("{}, seed {}: making faces", command.preset, command.seed));
     let origin = || format!("terrain generate --preset {}", command.preset);
@@ -54,6 +59,19 @@ pub(crate) fn generate(command: &TerrainGenerate, json: bool) -> Result<Outcome,
     let report = report(command, &ground, &mesh);
     say(&if json { format!("{report:#}\n") } else { screen(&report) });
     Ok(Outcome::Fine)
+}
+
+/// Refuses a coarse model with unknown heights: relief is made between its posts, and nothing fills a gap.
+fn ask_known(file: &Path, heights: &[f64]) -> Result<(), Trouble> {
+    match heights.iter().filter(|height| height.is_nan()).count() as u64 {
+        0 => Ok(()),
+        unknown => Err(Trouble::Usage(format!(
+            "--coarse {}: {} unknown; expected a height at each: --window X,Y,WIDTH,HEIGHT takes a part without gaps, and a program for \
+             maps (gdal_fillnodata) fills them",
+            file.display(),
+            counted(unknown, "of its posts is", "of its posts are")
+        ))),
+    }
 }
 
 /// The parameters of the ground, for the extras of its file and for the report.

@@ -139,6 +139,12 @@ fn errors_are_one_clear_message() {
         &raypencil(folder.path(), &["diff", "small.toml", "tracer"]),
         &["small.toml", "expected a folder, or a file"],
     );
+    for option in ["--fail", "--fail-relative", "--fail-ulp", "--fail-percent", "--hard-fail"] {
+        let out = raypencil(folder.path(), &["diff", "scanline", "tracer", option, "-1"]);
+        let said = String::from_utf8_lossy(&out.stderr);
+        assert!(out.status.code() == Some(2) && said.contains("'-1'") && said.contains(option), "{said}");
+        assert!(!said.contains("-- -1") && !said.contains("unexpected"), "{said}");
+    }
     let none = ["no channel is in both", "A has N.X", "B has beam-0/N.X"];
     assert_trouble(&raypencil(folder.path(), &["diff", "tracer/camera.exr", "tracer"]), &none);
     std::fs::create_dir_all(folder.path().join("mine/camera")).unwrap();

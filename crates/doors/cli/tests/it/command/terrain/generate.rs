@@ -130,7 +130,10 @@ fn errors_are_named_and_leave_no_file() {
     trouble(&["-o", "x.ply"], &["x.ply", "ends in .glb"]);
     let coarse = ["terrain", "generate", "--coarse", "hole.tif", "-o", "x.glb"];
     // Rows of posts count from the south: the second row from the north is the third of four.
-    assert_trouble(&raypencil(folder.path(), &coarse), &["coarse is post (2, 2) at NaN m", "known heights"]);
+    assert_trouble(
+        &raypencil(folder.path(), &coarse),
+        &["--coarse hole.tif: 1 of its posts is unknown", "--window X,Y,WIDTH,HEIGHT"],
+    );
     let absurd = ["terrain", "generate", "--extent", "1e5", "--post-spacing", "0.001", "-o", "x.glb"];
     assert_trouble(&raypencil(folder.path(), &absurd), &["post_spacing_m", "at most 33554432 faces"]);
 }
