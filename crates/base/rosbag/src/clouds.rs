@@ -32,6 +32,8 @@ pub struct BagCloud {
     pub topic: String,
     /// Its number among the clouds of the topic, from 1.
     pub message: u64,
+    /// When the earliest message of the bag was recorded, nanoseconds.
+    pub begin_ns: u64,
     /// The cloud. Its numbers are as the bag has them: nothing of `data` was looked at.
     pub cloud: PointCloud2,
 }
@@ -110,10 +112,16 @@ struct Found {
     clouds: Clouds,
     topics: BTreeMap<String, u64>,
     chosen: Option<BagCloud>,
+    /// When the earliest message of any topic was recorded, nanoseconds.
+    begin_ns: Option<u64>,
 }
 
 impl Found {
     fn take(&mut self, record: Record<'_>, choice: &CloudChoice<'_>) -> Result<(), Fault> {
+        if let Record::Message { header, .. } = &record {
+            let at = header.log_time;
+            self.begin_ns = Some(self.begin_ns.map_or(at, |begin| begin.min(at)));
+        }
         let Some((topic, data)) = self.clouds.take(record) else { return Ok(()) };
         let message = self.topics.entry(topic.name.clone()).or_default();
         *message += 1;
@@ -128,7 +136,7 @@ impl Found {
         }
         let cloud = point_cloud(&data)
             .map_err(|found| Fault::new(place(), found, format!("the CDR of {}", PointCloud2::TYPE)))?;
-        self.chosen = Some(BagCloud { topic: topic.name.clone(), message: *message, cloud });
+        self.chosen = Some(BagCloud { topic: topic.name.clone(), message: *message, begin_ns: 0, cloud });
         Ok(())
     }
 
@@ -172,7 +180,8 @@ impl Found {
             Some(_) if choice.message.is_none() && count > 1 => {
                 Err(Fault::new(place, counted, format!("one: `--message` 1 to {count} chooses it")))
             }
-            Some(chosen) => Ok(chosen),
+            // Messages need not be in the order of time: the earliest one may follow the cloud.
+            Some(chosen) => Ok(BagCloud { begin_ns: self.begin_ns.unwrap_or_default(), ..chosen }),
             None => {
                 let number = choice.message.unwrap_or(1);
                 Err(Fault::new(

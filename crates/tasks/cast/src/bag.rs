@@ -46,7 +46,8 @@ pub enum BagFields {
     /// `x y z intensity` f32, `t` u32 in nanoseconds after the first ray, `reflectivity ring ambient` u16, `range` u32 in
     /// thousandths; 48 bytes, aligned as PCL does. `ring` counts from above. (ROS driver of Ouster, `ouster_ros`, `os_point.h`)
     Ouster,
-    /// `x y z intensity` f32, `tag line` u8, `timestamp` f64 in nanoseconds; 26 bytes, without gaps. (`livox_ros_driver2`,
+    /// `x y z intensity` f32, `tag line` u8, `timestamp` f64 in nanoseconds; 26 bytes, without gaps. `line` is the channel, in the order
+    /// of the pattern: the driver has the number of the laser. (`livox_ros_driver2`,
     /// `InitPointcloud2MsgHeader`, with `xfer_format` 0)
     Livox,
 }
@@ -136,7 +137,7 @@ struct Places {
     columns: u64,
     /// Cell of each, row by row.
     cells: Vec<usize>,
-    /// Ring of each.
+    /// Ring of each; of Livox the channel.
     rings: Vec<u64>,
 }
 
@@ -178,7 +179,8 @@ impl Places {
         };
         let ring = |channel: u64| match fields {
             BagFields::Ouster => columns - 1 - ranks[channel as usize],
-            BagFields::Velodyne | BagFields::Livox => ranks[channel as usize],
+            BagFields::Velodyne => ranks[channel as usize],
+            BagFields::Livox => channel,
         };
         let cell = |index: u64| match fields {
             BagFields::Ouster => ring(index % columns) * rows + index / columns,

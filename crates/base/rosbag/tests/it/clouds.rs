@@ -1,7 +1,7 @@
 //! Point clouds of other programs' bags, and of broken ones.
 
 use raypencil_rosbag::{
-    BagCloud, BagWriter, CloudChoice, PointCloud2, PointField, Stamp, Topic, largest_point_cloud,
+    BagCloud, BagWriter, Clock, CloudChoice, PointCloud2, PointField, Stamp, Topic, largest_point_cloud,
     read_point_cloud,
 };
 
@@ -87,10 +87,12 @@ fn what_the_writer_writes_is_read_again() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut writer = BagWriter::create(&folder.path().join("one")).expect("a bag");
     writer.write(&Topic::new("/points"), Stamp::from_nanoseconds(5), &cloud).expect("a message");
+    writer.write(&Topic::new("/clock"), Stamp::from_nanoseconds(3), &Clock::default()).expect("a message");
+    writer.write(&Topic::new("/clock"), Stamp::from_nanoseconds(7), &Clock::default()).expect("a message");
     writer.finish().expect("a bag");
     let bytes = std::fs::read(folder.path().join("one/one_0.mcap")).expect("bytes");
     let found = read(&bytes, None, None).expect("a cloud");
-    assert_eq!(found, BagCloud { topic: "/points".into(), message: 1, cloud });
+    assert_eq!(found, BagCloud { topic: "/points".into(), message: 1, begin_ns: 3, cloud });
 }
 
 const CLOUD: &str = "sensor_msgs/msg/PointCloud2";

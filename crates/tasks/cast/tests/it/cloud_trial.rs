@@ -127,8 +127,11 @@ pub(super) struct Trial {
 
 impl Trial {
     pub(super) fn new(head: &Spinning, mounting: &Mounting) -> Self {
+        Self::of(set_of(head, mounting))
+    }
+
+    pub(super) fn of(set: NamedRaySet) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
-        let set = set_of(head, mounting);
         let source = CastSource { mesh: "room".into(), rays: "head".into(), ..CastSource::default() };
         let pack = folder.path().join("pack");
         put_pack(&pack, &(&source, &set), |pack| {

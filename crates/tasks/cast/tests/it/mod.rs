@@ -16,6 +16,7 @@ mod clouds_of_sensors;
 mod columns;
 mod kept_packs;
 mod lidar;
+mod own_bags;
 mod pack_trial;
 mod packs_refused;
 mod packs_right;

@@ -158,3 +158,45 @@ fn a_file_without_rays_is_refused_with_a_sentence() {
     let told = "named.csv: line 1: \"u\"; expected a heading of the names ox,oy,oz,dx,dy,dz";
     assert_trouble(&raypencil(at, &["cast", "floor.obj", "named.csv"]), &[told]);
 }
+
+/// The shipped patterns over a floor: each form of bag that `cast` writes agrees with the pack of the same pattern. So does a later scan of a
+/// bag, whose times are later by what brought the first to 1 s. Seconds, for each form of a pattern has an order and numbers of its own.
+#[test]
+fn bags_of_a_pattern_agree_with_its_own_pack() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    fs::write(at.join("floor.obj"), "v -9 -9 0\nv 9 -9 0\nv 9 9 0.5\nv -9 9 0\nf 1 2 3\nf 1 3 4\n").unwrap();
+    let shipped = |name: &str| {
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../data/rays").join(name))
+            .unwrap()
+    };
+    let mixed = |start_s: f64, azimuth_deg: f64, steps: u32| {
+        format!(
+            "[[rays]]\nname = \"mixed\"\nstart_s = {start_s}\nposition_m = [0, 0, 1.2]\nspinning = {{ elevations_deg = [-15, 1, -13, -3], \
+             firing_times_us = [0, 20, 30, 50], steps = {steps}, azimuth_step_deg = -3.6, azimuth_start_deg = {azimuth_deg}, rate_hz = 20 }}\n"
+        )
+    };
+    // A part of the turn has each channel as well.
+    let head = shipped("vlp16.toml").replace("rate_hz = 10", "rate_hz = 10, steps = 120");
+    assert!(head.contains("steps = 120"));
+    let patterns = [head, shipped("wide.toml")];
+    let agrees = |pack: &str, bag: &str, more: &[&str]| {
+        let shown = screen(at, &[&["check", pack, bag, "--frame", "sensor"], more].concat(), 0);
+        assert!(shown.contains("rays agree with the exact answers"), "{shown}");
+    };
+    for (k, pattern) in patterns.iter().enumerate() {
+        fs::write(at.join("rays.toml"), pattern).unwrap();
+        let pack = format!("pack-{k}");
+        screen(at, &["pack", "floor.obj", "--rays", "rays.toml", "-o", &pack], 0);
+        for fields in ["velodyne", "ouster", "livox"] {
+            let out = format!("{fields}-{k}");
+            screen(at, &["cast", "floor.obj", "rays.toml", "--bag", fields, "-o", &out], 0);
+            agrees(&pack, &format!("{out}/rosbag/rosbag_0.mcap"), &[]);
+        }
+    }
+    fs::write(at.join("rays.toml"), mixed(0.0, 0.0, 40)).unwrap();
+    screen(at, &["cast", "floor.obj", "rays.toml", "--scans", "20", "--bag", "livox", "-o", "scans"], 0);
+    fs::write(at.join("second.toml"), mixed(0.01, -72.0, 20)).unwrap();
+    screen(at, &["pack", "floor.obj", "--rays", "second.toml", "-o", "second"], 0);
+    agrees("second", "scans/rosbag/rosbag_0.mcap", &["--message", "2"]);
+}

@@ -7,6 +7,7 @@ use raypencil_files::Fault;
 use raypencil_mesh_io::{Cloud, CloudColumn};
 use raypencil_scene::CastRay;
 
+use super::file::BagPlace;
 use crate::pack::scan::Scan;
 
 /// Greatest share of the points, in a hundred, that may belong to no ray. Tuned: more say that the points were laid on the wrong rays.
@@ -60,6 +61,8 @@ pub(super) struct Asked<'a> {
     pub(super) places: usize,
     /// Number of the return of each place, by which points are told; NaN for a place without one. Empty where rays stand for themselves.
     pub(super) numbers: &'a [f64],
+    /// The bag of the cloud; `None`: it has a file of its own.
+    pub(super) bag: Option<&'a BagPlace>,
 }
 
 impl Asked<'_> {
@@ -112,12 +115,13 @@ impl Asked<'_> {
         if has_channels && cloud.width as usize == channels { None } else { Some(has_channels) }
     }
 
-    /// By direction: rays and points in the sensor's frame, the ray that is nearest in angle.
+    /// By direction: rays and points in the sensor's frame, the ray that is nearest in angle. The rays of a beam's returns lie near each
+    /// other: there the number of the return tells which one it is.
     pub(super) fn by_direction(
         &self,
         rays: &[(DVec3, DVec3)],
         points: &[DVec3],
-        is_point: &[bool],
+        (cloud, is_point): (&Cloud, &[bool]),
     ) -> Assigned {
         let cells = (libm::sqrt(rays.len() as f64) as i32).clamp(1, MAX_CELLS);
         let cell = |direction: DVec3| {
@@ -127,18 +131,21 @@ impl Asked<'_> {
         for (index, (_, direction)) in rays.iter().enumerate() {
             grid.entry(cell(*direction)).or_default().push(index);
         }
-        let ray = |point: usize| {
+        let beam = |point: usize| {
             let place = points[point];
             let [x, y, z] = cell(place.normalize_or_zero());
-            let (mut best, mut next) = ((f64::INFINITY, 0), f64::INFINITY);
+            let (mut best, mut next) = ((f64::INFINITY, usize::MAX), f64::INFINITY);
             for k in 0..27 {
                 let around = [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1];
                 for &index in grid.get(&around).into_iter().flatten() {
                     let (origin, direction) = rays[index];
                     let from = place - origin;
                     let angle = libm::atan2(from.cross(direction).length(), from.dot(direction));
-                    if angle < best.0 {
-                        (next, best) = (best.0, (angle, index));
+                    let beam = index / self.places;
+                    if beam == best.1 {
+                        best.0 = best.0.min(angle);
+                    } else if angle < best.0 {
+                        (next, best) = (best.0, (angle, beam));
                     } else if angle < next {
                         next = angle;
                     }
@@ -146,7 +153,7 @@ impl Asked<'_> {
             }
             (best.0 * NEARER <= next && best.0.is_finite()).then_some(best.1)
         };
-        self.collected(is_point, ray, BY_DIRECTION)
+        self.of_beams(cloud, is_point, beam, BY_DIRECTION)
     }
 
     fn collected(

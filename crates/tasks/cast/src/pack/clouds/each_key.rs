@@ -3,7 +3,7 @@
 use raypencil_mesh_io::Cloud;
 
 use super::assign::{Asked, Assigned};
-use super::keys::{BY_RING, Keys};
+use super::keys::Keys;
 
 /// What each of the fields says of the rays of points.
 #[derive(Debug, Default)]
@@ -30,11 +30,16 @@ impl Asked<'_> {
         let mut is_wrong = vec![false; found.point_of.len()];
         let mut compared = Vec::new();
         let channels = self.channels().unwrap_or(1);
-        if let Some((Some(column), by)) = self.channel_field(cloud) {
-            let channel_of = self.channel_of_number(by == BY_RING, keys);
+        if let Some((Some(column), _)) = self.channel_field(cloud) {
+            let has_rows = self.has_rows_as_rings(cloud);
+            let channel_of = match has_rows {
+                true => (0..found.point_of.len() / self.places / channels).collect(),
+                false => self.channel_of_number(keys),
+            };
+            let channel_of_beam = |beam: usize| if has_rows { beam / channels } else { beam % channels };
             for (ray, point) in laid() {
                 let channel = keys.channel(column, point, &channel_of);
-                is_wrong[ray] |= channel != Some(ray / self.places % channels);
+                is_wrong[ray] |= channel != Some(channel_of_beam(ray / self.places));
             }
             compared.push(column.name.clone());
         }

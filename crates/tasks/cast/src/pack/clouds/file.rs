@@ -10,6 +10,9 @@ use raypencil_mesh_io::{
 };
 use raypencil_rosbag::{BagCloud, CloudChoice, PointField, largest_point_cloud, read_point_cloud};
 
+/// The time at which a bag of the set begins that would begin earlier, nanoseconds: the time 0 means "no time" in ROS.
+const FIRST_NS: u64 = 1_000_000_000;
+
 /// Whether a file's name ends as that of a bag does: `.mcap`.
 pub fn is_bag_of_clouds(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap"))
@@ -68,20 +71,42 @@ fn opened(path: &Path) -> std::io::Result<(impl Read, u64)> {
     Ok((BufReader::new(File::open(path)?), facts.len()))
 }
 
+/// Where the cloud of a bag stands in it.
+pub(super) struct BagPlace {
+    /// Which message it is, in words.
+    pub(super) words: String,
+    /// Its stamp, nanoseconds.
+    stamp_ns: u64,
+    /// When the earliest message of the bag was recorded, nanoseconds.
+    begin_ns: u64,
+}
+
+impl BagPlace {
+    /// How much later the bag tells its times than a set whose first ray is fired at a time, seconds. A set that begins before 1 s is told
+    /// from 1 s on (docs/formats/rosbag.md): then the bag begins at 1 s, and its stamp is that of the first ray.
+    pub(super) fn later_s(&self, first_s: f64) -> f64 {
+        if self.begin_ns != FIRST_NS {
+            return 0.0;
+        }
+        let later_s = self.stamp_ns as f64 * 1e-9 - first_s;
+        if later_s > 0.0 { later_s } else { 0.0 }
+    }
+}
+
 /// Reads those fields of a cloud that `keeps` names, and x, y and z; of a bag beside it which message it is, in words.
 pub(super) fn read(
     path: &Path,
     choice: &CloudChoice<'_>,
     keeps: impl Fn(&str) -> bool,
-) -> Result<(Cloud, Option<String>), FileError> {
+) -> Result<(Cloud, Option<BagPlace>), FileError> {
     if !is_bag_of_clouds(path) {
         return Ok((read_cloud(path, keeps)?, None));
     }
     let (stream, length) = opened(path).map_err(|error| FileError::io(path, "read", error))?;
     let of_bag = || -> Result<_, Fault> {
-        let BagCloud { topic, message, cloud } = read_point_cloud(stream, length, choice)?;
-        let source = format!("message {message} of {topic}");
-        let within = |fault: Fault| fault.inside(&source);
+        let BagCloud { topic, message, begin_ns, cloud } = read_point_cloud(stream, length, choice)?;
+        let words = format!("message {message} of {topic}");
+        let within = |fault: Fault| fault.inside(&words);
         let fields = cloud.fields.iter().map(packed).collect::<Result<Vec<_>, _>>().map_err(within)?;
         let points = PackedPoints {
             fields: &fields,
@@ -91,8 +116,8 @@ pub(super) fn read(
             is_big_endian: cloud.is_bigendian,
             data: &cloud.data.0,
         };
-        let cloud = points.cloud(|name| ["x", "y", "z"].contains(&name) || keeps(name)).map_err(within)?;
-        Ok((cloud, Some(source)))
+        let read = points.cloud(|name| ["x", "y", "z"].contains(&name) || keeps(name)).map_err(within)?;
+        Ok((read, Some(BagPlace { words, stamp_ns: cloud.header.stamp.nanoseconds(), begin_ns })))
     };
     of_bag().map_err(|fault| FileError::Cloud(fault.in_file(path)))
 }

@@ -11,10 +11,13 @@ use crate::pack::scan::Scan;
 /// Words for points that are laid on rays by ring and time.
 pub(super) const BY_RING: &str = "by ring and time";
 
+/// Words for points that are laid on rays by the channel in the order of the manual and by time.
+pub(super) const BY_CHANNEL: &str = "by channel and time";
+
 /// Points of which the elevation is looked at, at most.
 const MAX_MEASURED: usize = 20_000;
 
-/// What a number in the field `ring` stands for.
+/// What a number of a channel stands for, in the field `ring`, `channel` or `line`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Ring {
     /// The rank of the channel by its elevation, from below.
@@ -121,24 +124,17 @@ impl TimeField<'_> {
     }
 }
 
-/// Velodyne: seconds after the first ray. Ouster and Livox: nanoseconds, `offset_time` after the first ray. Others: seconds.
-fn time_field<'a>(cloud: &'a Cloud, times: &[f64]) -> Option<TimeField<'a>> {
-    let first = times.iter().copied().fold(f64::INFINITY, f64::min);
-    let stamp = if is_of_livox(cloud) { 1e-9 } else { 1.0 };
-    let known =
-        [("time", 1.0, first), ("timestamp", stamp, 0.0), ("t", 1e-9, first), ("offset_time", 1e-9, first)];
-    known
-        .into_iter()
-        .find_map(|(name, unit, zero)| Some(TimeField { name, column: cloud.column(name)?, unit, zero }))
-}
-
 /// Whether a cloud has the fields of Livox's driver: its `timestamp` is in nanoseconds.
 fn is_of_livox(cloud: &Cloud) -> bool {
     cloud.column("line").is_some() && cloud.column("tag").is_some()
 }
 
-/// What the field `ring` counts: with Ouster's field `t` channels from above, as its driver does, else from below.
+/// What the field of the channel counts. `ring`: with Ouster's field `t` channels from above, as its driver does, else from below.
+/// `channel` and Livox's `line` are channels in the order of the manual: its driver has the laser's number.
 pub(super) fn usual_ring(cloud: &Cloud) -> Ring {
+    if cloud.column("ring").is_none() {
+        return Ring::Channel;
+    }
     let is_of_ouster = cloud.column("t").is_some() && cloud.column("time").is_none();
     if is_of_ouster { Ring::FromAbove } else { Ring::FromBelow }
 }
@@ -152,8 +148,8 @@ pub(super) fn is_key(name: &str) -> bool {
 impl Asked<'_> {
     /// By channel and time, where the file has both and they tell rays apart.
     pub(super) fn by_keys(&self, cloud: &Cloud, is_point: &[bool], keys: Keys) -> Option<Assigned> {
-        let (of_channel, by) = self.channel_field(cloud)?;
-        let channel_of = self.channel_of_number(by == BY_RING, keys);
+        let (of_channel, by) = self.channel_field(cloud).filter(|_| !self.has_rows_as_rings(cloud))?;
+        let channel_of = self.channel_of_number(keys);
         let (_, seconds) = self.stated_times(cloud, keys.clock)?;
         let fired = self.fired(keys.clock)?;
         let beam = |point: usize| {
@@ -170,7 +166,7 @@ impl Asked<'_> {
         cloud: &'c Cloud,
         clock: Clock,
     ) -> Option<(&'static str, impl Fn(usize) -> f64 + use<'c>)> {
-        let field = time_field(cloud, &self.times()?)?;
+        let field = self.time_field(cloud, &self.times()?)?;
         Some((field.name, move |point: usize| field.seconds(point, clock)))
     }
 
@@ -184,6 +180,23 @@ impl Asked<'_> {
         }
         let channels = lists.into_iter().map(ChannelTimes::new).collect::<Option<_>>()?;
         Some(Fired { times, channels })
+    }
+
+    /// Velodyne: seconds after the first ray. Ouster and Livox: nanoseconds, `offset_time` after the first ray. Others: seconds. What counts
+    /// from elsewhere is later by as much as the whole bag is.
+    fn time_field<'c>(&self, cloud: &'c Cloud, times: &[f64]) -> Option<TimeField<'c>> {
+        let first = times.iter().copied().fold(f64::INFINITY, f64::min);
+        let stamp = if is_of_livox(cloud) { 1e-9 } else { 1.0 };
+        let zero = -self.bag.map_or(0.0, |bag| bag.later_s(first));
+        let known = [
+            ("time", 1.0, first),
+            ("timestamp", stamp, zero),
+            ("t", 1e-9, first),
+            ("offset_time", 1e-9, first),
+        ];
+        known
+            .into_iter()
+            .find_map(|(name, unit, zero)| Some(TimeField { name, column: cloud.column(name)?, unit, zero }))
     }
 
     /// Times of the beams, seconds.
@@ -211,19 +224,25 @@ impl Asked<'_> {
         let of_channel = cloud.column("channel").or_else(|| cloud.column("line"));
         match (of_channel, cloud.column("ring")) {
             _ if self.channels().is_none() => Some((None, "by time")),
-            (Some(column), None) => Some((Some(column), "by channel and time")),
+            (Some(column), None) => Some((Some(column), BY_CHANNEL)),
             // With both fields, the ring is what consumers read.
             (_, Some(column)) => Some((Some(column), BY_RING)),
             (None, None) => None,
         }
     }
 
+    /// Whether the field `ring` is the row of a pattern without elevations: beside Ouster's field `t`, whose driver has a row for each ring.
+    pub(super) fn has_rows_as_rings(&self, cloud: &Cloud) -> bool {
+        let has_elevations = self.scan.is_some_and(|scan| scan.elevations_deg.is_some());
+        !has_elevations && usual_ring(cloud) == Ring::FromAbove
+    }
+
     /// The channel, in the order of the manual, of each number.
-    pub(super) fn channel_of_number(&self, is_ring: bool, keys: Keys) -> Vec<usize> {
+    pub(super) fn channel_of_number(&self, keys: Keys) -> Vec<usize> {
         let channels = self.channels().unwrap_or(1);
         let elevations = self.scan.and_then(|scan| scan.elevations_deg.as_ref());
         let mut channel_of: Vec<usize> = (0..channels).collect();
-        if let Some(elevations) = elevations.filter(|_| is_ring) {
+        if let Some(elevations) = elevations {
             let ranks = ranks(elevations);
             let key = |channel: usize| match keys.ring {
                 Ring::FromBelow => ranks[channel] as usize,
@@ -269,7 +288,7 @@ impl Asked<'_> {
     /// the time of the first ray, or its last that of the last.
     pub(super) fn lateness(&self, cloud: &Cloud, is_point: &[bool], clock: Clock) -> Vec<f64> {
         let Some(times) = self.times() else { return Vec::new() };
-        let Some(field) = time_field(cloud, &times) else { return Vec::new() };
+        let Some(field) = self.time_field(cloud, &times) else { return Vec::new() };
         let stated =
             || (0..is_point.len()).filter(|&point| is_point[point]).map(|point| field.seconds(point, clock));
         let least = |times: &mut dyn Iterator<Item = f64>| times.fold(f64::INFINITY, f64::min);
@@ -285,7 +304,7 @@ impl Asked<'_> {
         const UNITS: [(&str, f64); 4] =
             [("seconds", 1.0), ("milliseconds", 1e-3), ("microseconds", 1e-6), ("nanoseconds", 1e-9)];
         let Some(times) = self.times() else { return Vec::new() };
-        let Some(field) = time_field(cloud, &times) else { return Vec::new() };
+        let Some(field) = self.time_field(cloud, &times) else { return Vec::new() };
         let right = UNITS.iter().find(|(_, unit)| *unit == field.unit).map_or("seconds", |(name, _)| *name);
         let others = UNITS.iter().filter(|(_, unit)| *unit != field.unit).map(|(name, unit)| {
             let words = format!("the field {} is in {name}: it counts {right}", field.name);
@@ -301,7 +320,7 @@ impl Asked<'_> {
     /// The one time that all points have, as the field has it, where their rays have several.
     pub(super) fn only_time(&self, cloud: &Cloud, is_point: &[bool]) -> Option<f64> {
         let times = self.times()?;
-        let field = time_field(cloud, &times)?;
+        let field = self.time_field(cloud, &times)?;
         let mut stated =
             (0..is_point.len()).filter(|&point| is_point[point]).map(|point| field.column.values[point]);
         let first = stated.next()?;
@@ -318,10 +337,10 @@ impl Asked<'_> {
         (frame, keys): (CloudFrame, Keys),
     ) -> Option<[usize; 2]> {
         let scan = self.scan?;
-        let (Some(column), by) = self.channel_field(cloud)? else { return None };
-        let channel_of = self.channel_of_number(by == BY_RING, keys);
+        let (Some(column), _) = self.channel_field(cloud)? else { return None };
+        let channel_of = self.channel_of_number(keys);
         let times = self.times()?;
-        let time = time_field(cloud, &times)?;
+        let time = self.time_field(cloud, &times)?;
         let mut votes = Votes::new(scan, self.channels()?, &|channel| self.rays[channel * self.places])?;
         let every = points.len().div_ceil(MAX_MEASURED).max(1);
         for point in (0..points.len()).step_by(every).filter(|&point| is_point[point]) {

@@ -12,7 +12,7 @@ use super::beams::Beams;
 use super::each_key::EachKey;
 use super::file;
 use super::fit::rounded;
-use super::keys::{BY_RING, Clock, Keys, is_key, usual_ring};
+use super::keys::{BY_CHANNEL, BY_RING, Clock, Keys, is_key, usual_ring};
 use super::numbers::{NUMBER_RULES, wrong_numbers};
 use super::rules::{Places, assigned, backwards, by_direction, rings, swapped};
 use crate::cloud::CloudFrame;
@@ -138,7 +138,7 @@ pub(in crate::pack) fn read_cloud_of<'a>(
     conventions: CandidateConventions<'_>,
 ) -> Result<CloudCase<'a>, FileError> {
     let choice = &conventions.cloud.choice;
-    let (cloud, source) = file::read(path, choice, |name| name == "range" || is_key(name))?;
+    let (cloud, bag) = file::read(path, choice, |name| name == "range" || is_key(name))?;
     let fault = |fault: raypencil_files::Fault| FileError::Cloud(fault.in_file(path));
     let frame = conventions.cloud.frame;
     if scan.is_none() && frame != CloudFrame::Mesh {
@@ -159,9 +159,9 @@ pub(in crate::pack) fn read_cloud_of<'a>(
     let places = beams.map_or(1, Beams::places);
     let shape_of_beams = if places > 1 { &shape[..shape.len() - 1] } else { shape };
     let numbers = beams.map_or_else(Vec::new, Beams::told_numbers);
-    let asked = Asked { shape: shape_of_beams, rays, scan, places, numbers: &numbers };
+    let asked = Asked { shape: shape_of_beams, rays, scan, places, numbers: &numbers, bag: bag.as_ref() };
     let usual = usual_ring(&cloud);
-    let by_direction = || by_direction(&asked, rays, (&points, &is_point), frame);
+    let by_direction = || by_direction(&asked, rays, (&points, &cloud, &is_point), frame);
     let angle = |point: usize, ray: usize| {
         let place = pose_of(scan, frame, ray).map_or(points[point], |pose| pose * points[point]);
         let (from, along) = (place - rays[ray].origin, rays[ray].direction);
@@ -210,7 +210,7 @@ pub(in crate::pack) fn read_cloud_of<'a>(
         |other: Option<Assigned>| other.filter(|other| other.is_clear(real)).map(|other| part_of(&other));
     let with = |(words, other): (&'static str, Option<Assigned>)| Some((words.to_string(), of(other)?));
     let mut otherwise = Vec::new();
-    if found.by == BY_RING {
+    if [BY_RING, BY_CHANNEL].contains(&found.by) {
         let of_ring = |(words, ring)| (words, asked.by_keys(&cloud, &is_point, Keys { ring, ..keys }));
         otherwise.extend(rings(usual).into_iter().map(of_ring).filter_map(with));
     }
@@ -282,7 +282,7 @@ pub(in crate::pack) fn read_cloud_of<'a>(
         wrong_numbers,
         numbers_why,
         frame,
-        source,
+        source: bag.as_ref().map(|bag| bag.words.clone()),
         points: real,
         returns_of_beam: beams.map(Beams::places),
         assigned: found.by,

@@ -9,8 +9,21 @@ use super::keys::{Keys, Ring};
 use crate::cloud::CloudFrame;
 use crate::pack::scan::Scan;
 
-/// What a number in the field `ring` may stand for in place of what it should.
+/// What the number of a channel may stand for in place of what it should.
 pub(super) fn rings(usual: Ring) -> Vec<(&'static str, Ring)> {
+    if usual == Ring::Channel {
+        return vec![
+            (
+                "the numbers of channels count elevations from below: they are in the order of the manual",
+                Ring::FromBelow,
+            ),
+            (
+                "the numbers of channels count elevations from above: they are in the order of the manual",
+                Ring::FromAbove,
+            ),
+            ("the numbers of channels are in the opposite order of the manual", Ring::ChannelReversed),
+        ];
+    }
     let from_below =
         "the field ring counts channels from below: beside Ouster's field t its 0 is the highest";
     let others = [
@@ -107,7 +120,7 @@ pub(super) fn assigned(
 pub(super) fn by_direction(
     asked: &Asked<'_>,
     rays: &[CastRay],
-    (points, is_point): (&[DVec3], &[bool]),
+    (points, cloud, is_point): (&[DVec3], &Cloud, &[bool]),
     frame: CloudFrame,
 ) -> Option<Assigned> {
     // A direction tells rays apart in the sensor's own frame. Of one that moves, points in another frame have lost it.
@@ -125,5 +138,5 @@ pub(super) fn by_direction(
         asked.scan.filter(|_| frame == CloudFrame::Mesh).map(|scan| scan.mounting.first().inverse());
     let points: Vec<DVec3> =
         points.iter().map(|&point| to_sensor.map_or(point, |pose| pose * point)).collect();
-    Some(asked.by_direction(&rays, &points, is_point))
+    Some(asked.by_direction(&rays, &points, (cloud, is_point)))
 }
