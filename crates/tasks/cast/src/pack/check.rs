@@ -5,7 +5,7 @@ use std::path::Path;
 
 use raypencil_files::{Fault, FileError, Limits, RayArray, quoted, ray_rows, read_npy_numbers};
 use raypencil_referee::ExactCast;
-use raypencil_scene::{CastRay, Precision, Progress, Sides, Triangles};
+use raypencil_scene::{CastRay, FaceId, Precision, Progress, Sides, Triangles};
 
 use super::PACK_NAME;
 use super::arrays::{axes, constants, orders};
@@ -300,6 +300,16 @@ fn judge(
     let is_silent = says_nothing(stated, rays.len()) && comparison.wrong().all(|(_, wrong)| is_lost(&wrong));
     // Truth values alone say too little of each ray: any mistake may explain a few of them.
     let is_telling = [stated.face.is_some(), stated.t.is_some(), stated.range.is_some()].contains(&true);
+    // Where rounding may make anything of a length up to its own size, any mistake explains one that is too long.
+    let says_where = |&index: &usize| {
+        let (ray, read) = (&rays[index], exact.reading(&rays[index], sides));
+        let is_needle = |face: FaceId| {
+            let range = exact.meeting(ray, face).map_or(f64::INFINITY, |hit| hit.range().double);
+            exact.range_error(ray, face, precision) >= range
+        };
+        !read.hit().is_some_and(|faces| faces.iter().all(|face| is_needle(*face)))
+    };
+    let is_telling = is_telling && wrong.iter().any(says_where);
     let why = (!wrong.is_empty() && !is_silent && is_telling).then(|| {
         progress.stage("looking for a mistake that explains the wrong rays");
         let of_cloud = case.as_ref().map(|case| of_cloud(case, exact, sides));
