@@ -16,6 +16,7 @@ use super::explain::explain;
 use super::kept_answers::{MAX_COUNTED, refuse_other_answers};
 use super::lengths::lengths;
 use super::mistakes::OfArrays;
+use super::moved::shifts;
 use super::read::RayPack;
 use super::scan::Scan;
 use super::trial::Trial;
@@ -317,6 +318,7 @@ fn judge(
         let numbers = |trial: &Trial| {
             let mut found = lengths(trial, exact, sides);
             found.extend(decimals(trial));
+            found.extend(shifts(trial, exact));
             found.extend(constants(trial, exact, sides));
             found
         };

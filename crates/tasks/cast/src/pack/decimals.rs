@@ -1,12 +1,17 @@
-//! Values of arrays that are rounded to decimals.
+//! Values of arrays that are rounded to decimals, or to multiples of another step.
 
 use super::mistakes::{Extra, Group};
-use super::steps::{is_multiple, step};
+use super::steps::{is_multiple, step, steps_of_ten, steps_of_two};
 use super::trial::Trial;
 use crate::comparison::{CastValue, Stated};
+use raypencil_scene::Precision;
 
 /// Decimals that values may be rounded to.
 const DECIMALS: std::ops::RangeInclusive<i32> = 1..=12;
+
+/// Powers of ten of which parts are steps, and negative powers of two that are. Coarser ones are steps of many scenes themselves.
+const POWERS_OF_TEN: std::ops::RangeInclusive<i32> = -8..=-3;
+const POWERS_OF_TWO: std::ops::RangeInclusive<i32> = 8..=20;
 
 /// Rays that are looked at, at most.
 const MAX_LOOKED: usize = 400;
@@ -32,9 +37,9 @@ fn numbers(stated: &Stated, value: CastValue, ray: usize) -> impl Iterator<Item 
     all.filter(|number| number.is_finite()).map(move |number| [number, error])
 }
 
-/// The fewest decimals to which values are rounded, if they are.
+/// The fewest decimals, or the largest step, to which values are rounded, if they are.
 pub(super) fn decimals(trial: &Trial) -> Vec<Extra<'static>> {
-    let steps: Vec<f64> = DECIMALS.map(|decimals| libm::pow(10.0, f64::from(-decimals))).collect();
+    let of_decimals: Vec<f64> = DECIMALS.map(|decimals| libm::pow(10.0, f64::from(-decimals))).collect();
     let every = trial.rays.len().div_ceil(MAX_LOOKED).max(1);
     let mut found: Vec<Extra<'static>> = Vec::new();
     for (whose, values) in GROUPS {
@@ -44,7 +49,16 @@ pub(super) fn decimals(trial: &Trial) -> Vec<Extra<'static>> {
         }
         let some = (0..trial.rays.len()).step_by(every);
         let of_ray = |ray| values.iter().flat_map(move |value| numbers(&trial.stated, *value, ray));
-        let Some(step) = step(&some.flat_map(of_ray).collect::<Vec<_>>(), &steps) else { continue };
+        let mut numbers_of_some: Vec<[f64; 2]> = some.flat_map(of_ray).collect();
+        let of_ten = step(&numbers_of_some, &of_decimals);
+        let of_part = step(&numbers_of_some, &steps_of_ten(POWERS_OF_TEN).collect::<Vec<_>>());
+        // A number of single precision is a multiple of its own last place: that says nothing.
+        for [number, error] in &mut numbers_of_some {
+            *error = error.max(Precision::F32.unit_roundoff * number.abs());
+        }
+        let of_two = step(&numbers_of_some, &steps_of_two(POWERS_OF_TWO).collect::<Vec<_>>());
+        let larger = |a: f64, b: f64| if b > a { b } else { a };
+        let Some(step) = [of_ten, of_part, of_two].into_iter().flatten().reduce(larger) else { continue };
         let decimals = -libm::log10(step).round();
         let undo = move |trial: &mut Trial| {
             for value in values {
@@ -59,12 +73,11 @@ pub(super) fn decimals(trial: &Trial) -> Vec<Extra<'static>> {
             trial.allowance = step;
         };
         let noun = if decimals == 1.0 { "decimal" } else { "decimals" };
-        found.push(Extra {
-            words: format!("{whose} rounded to {decimals} {noun}"),
-            undo: Box::new(undo),
-            is_common: false,
-            group: Group::Others,
-        });
+        let words = match of_ten == Some(step) {
+            true => format!("{whose} rounded to {decimals} {noun}"),
+            false => format!("{whose} rounded to multiples of {step}"),
+        };
+        found.push(Extra { words, undo: Box::new(undo), is_common: false, group: Group::Others });
     }
     found
 }

@@ -9,6 +9,7 @@
 //! clouds/     another program's point cloud
 //! lengths     a factor or a length by which arrays are off
 //! decimals    arrays that are rounded to decimals
+//! moved       errors of lengths that follow from a mesh whose corners are elsewhere
 //! steps       the step of which numbers are multiples
 //! single      whether wrong values look like those of single precision
 //! trial       a question and its stated answers, as mistakes change them
@@ -30,6 +31,7 @@ mod hits_alone;
 mod kept_answers;
 mod lengths;
 mod mistakes;
+mod moved;
 mod read;
 mod report;
 mod scan;

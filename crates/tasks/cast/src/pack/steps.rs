@@ -14,6 +14,22 @@ fn error_of(number: f64, error: f64) -> f64 {
     error + ROUNDINGS * f64::EPSILON * number.abs()
 }
 
+/// Parts of a power of ten that are steps.
+const STEPS_OF_TEN: [f64; 11] = [1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0];
+
+/// Such parts of powers of ten.
+pub(super) fn steps_of_ten(powers: std::ops::RangeInclusive<i32>) -> impl Iterator<Item = f64> {
+    powers.flat_map(|power| {
+        let part = move |part: f64| format!("{part}e{power}").parse::<f64>().unwrap_or(f64::NAN);
+        STEPS_OF_TEN.into_iter().map(part)
+    })
+}
+
+/// Negative powers of two.
+pub(super) fn steps_of_two(powers: std::ops::RangeInclusive<i32>) -> impl Iterator<Item = f64> {
+    powers.map(|power| libm::ldexp(1.0, -power))
+}
+
 /// The largest step of which nearly all numbers, each with how far it may be moved, are multiples, if that is no chance.
 pub(super) fn step(numbers: &[[f64; 2]], steps: &[f64]) -> Option<f64> {
     let mut steps = steps.to_vec();

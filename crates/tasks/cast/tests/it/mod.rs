@@ -18,6 +18,7 @@ mod kept_packs;
 mod lidar;
 mod own_bags;
 mod pack_trial;
+mod packs_of_precision;
 mod packs_refused;
 mod packs_right;
 mod packs_told;

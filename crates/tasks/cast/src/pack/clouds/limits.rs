@@ -7,7 +7,7 @@ use raypencil_scene::{CastRay, Reading, Sides};
 
 use super::fit::{median, rounded};
 use super::list::{List, along_of};
-use crate::pack::steps::{self, MIN_FITTED, is_multiple};
+use crate::pack::steps::{self, MIN_FITTED, is_multiple, steps_of_ten, steps_of_two};
 use crate::pack::trial::{CloudPart, Trial};
 
 /// Rays without a point that are looked at, at most.
@@ -16,8 +16,7 @@ const MAX_MISSING: usize = 400;
 /// Roundings of a length that was computed and compared with another.
 const ROUNDINGS: f64 = 16.0;
 
-/// Steps of numbers: parts of a power of ten, and negative powers of two.
-const STEPS_OF_TEN: [f64; 8] = [1.0, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
+/// Steps of numbers: parts of these powers of ten, and negative powers of two.
 const POWERS_OF_TEN: std::ops::RangeInclusive<i32> = -8..=0;
 const POWERS_OF_TWO: std::ops::RangeInclusive<i32> = 1..=14;
 
@@ -156,11 +155,8 @@ fn of_misses<'a>(list: &mut List<'a>, trial: &Trial, cloud: &CloudPart, exact: &
 
 /// The largest step of which nearly all numbers are multiples, each within its error, if that is no chance.
 fn step(numbers: &[[f64; 2]]) -> Option<f64> {
-    let of_ten = POWERS_OF_TEN.flat_map(|power| {
-        STEPS_OF_TEN.iter().map(move |part| format!("{part}e{power}").parse::<f64>().unwrap_or(f64::NAN))
-    });
-    let of_two = POWERS_OF_TWO.map(|power| libm::ldexp(1.0, -power));
-    steps::step(numbers, &of_ten.chain(of_two).collect::<Vec<f64>>())
+    let all = steps_of_ten(POWERS_OF_TEN).chain(steps_of_two(POWERS_OF_TWO));
+    steps::step(numbers, &all.collect::<Vec<f64>>())
 }
 
 /// Numbers that are multiples of a step: lengths, the field `range`, and coordinates. `pairs` are indices with exact ranges.
