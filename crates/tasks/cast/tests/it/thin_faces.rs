@@ -1,9 +1,15 @@
 //! Faces that are so thin that f64 cannot form their normals: what rounding explains is no mistake, and what it does not is one.
 
 use glam::DVec3;
-use raypencil_cast::{CastValue, RayVerdict, Stated, compare, comparison_text};
+use raypencil_cast::{
+    CandidateConventions, CastValue, RayArray, RayVerdict, Stated, check_ray_pack, compare, comparison_text,
+    write_ray_pack,
+};
+use raypencil_files::write_npy_numbers;
 use raypencil_referee::ExactCast;
 use raypencil_scene::{CastRay, Precision, Sides, Silent, Triangles};
+
+use super::pack_trial::source;
 
 /// Numbers from -1 to 1. (S. Vigna, splitmix64.c)
 fn numbers(seed: u64) -> impl FnMut() -> f64 {
@@ -123,4 +129,36 @@ fn tiny_needles_have_the_bounds_of_large_ones() {
     assert_eq!(counts(&stated), (1, 0));
     stated.barycentric = Some(vec![weights + DVec3::new(1e-3, 0.0, 0.0)]);
     assert_eq!(counts(&stated), (0, 1));
+}
+
+#[test]
+fn no_reason_is_given_where_only_lengths_on_needles_are_wrong() {
+    let why = |mesh: &Triangles, rays: &[CastRay], by: f64| {
+        let (pack, candidate) =
+            (tempfile::tempdir().expect("a folder"), tempfile::tempdir().expect("a folder"));
+        let count = rays.len() as u64;
+        let array = RayArray { shape: vec![count], rays: rays.to_vec() };
+        write_ray_pack(pack.path(), (mesh, &array, Sides::Both), &source(), &Silent).expect("a pack");
+        let exact = ExactCast::new(mesh);
+        let met: Vec<_> = rays.iter().map(|ray| exact.first(ray, Sides::Both)[0]).collect();
+        let t =
+            rays.iter().zip(&met).map(|(ray, face)| by * exact.values(ray, *face).expect("a hit").t.double);
+        let faces: Vec<f64> = met.iter().map(|face| f64::from(face.0)).collect();
+        write_npy_numbers(candidate.path().join("t.npy"), &[count], &t.collect::<Vec<_>>()).expect("t");
+        write_npy_numbers(candidate.path().join("face.npy"), &[count], &faces).expect("faces");
+        let conventions = CandidateConventions::default();
+        let checked = check_ray_pack(pack.path(), candidate.path(), Precision::F64, conventions, &Silent);
+        let checked = checked.expect("a check");
+        assert!(checked.comparison.counts().wrong > 0);
+        checked.why
+    };
+    // Far beyond all bounds; a thousandth of it, and much else, is within them.
+    let (mesh, rays, _) = exact_hits();
+    assert_eq!(why(&mesh, &rays, 1e6), None);
+    // The same on faces of ordinary shape has its reason.
+    let square = vec![[-9.0, -9.0, 0.0], [9.0, -9.0, 0.0], [0.0, 9.0, 0.0]];
+    let mesh = Triangles::new(square, vec![[0, 1, 2]]).expect("a triangle");
+    let rays: Vec<CastRay> =
+        (1..20).map(|k| CastRay::new(DVec3::new(0.1, 0.2, f64::from(k)), DVec3::NEG_Z)).collect();
+    assert!(why(&mesh, &rays, 1e3).expect("a reason").contains("thousandths"));
 }

@@ -20,6 +20,7 @@ fn facts(keys: (bool, Option<&str>), numbers: (bool, Option<&str>), has_strays: 
         wrong_keys: some(keys.0),
         keys_why: keys.1.map(str::to_string),
         numbered: 9,
+        number_field: None,
         wrong_numbers: some(numbers.0),
         numbers_why: numbers.1.map(str::to_string),
     }

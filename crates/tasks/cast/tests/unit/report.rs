@@ -41,6 +41,7 @@ fn of_cloud(checked: RayPackChecked, [wrong_keys, wrong_numbers, strays]: [&[usi
         wrong_keys: wrong_keys.to_vec(),
         keys_why: None,
         numbered: 4,
+        number_field: None,
         wrong_numbers: wrong_numbers.to_vec(),
         numbers_why: None,
     };
