@@ -23,7 +23,7 @@ pub struct DemFacts {
     pub unknown: usize,
     /// Posts that stand out by more than the rest of the model is high.
     pub spikes: Option<SpikeFacts>,
-    /// Distance of neighbouring posts along x and y, metres, if either is below [`MIN_POST_SPACING_M`].
+    /// Distance of neighbouring posts along x and y, metres, if either is below 1 cm.
     pub dense: Option<[f64; 2]>,
 }
 
