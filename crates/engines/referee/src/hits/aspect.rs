@@ -54,7 +54,7 @@ pub(crate) fn exact_parts(corners: [DVec3; 3]) -> (Dyadic, Vector<Dyadic>) {
     (larger(larger(first, second), third), edges[0].cross(&edges[1]))
 }
 
-/// The same without rounding before the last step; `None` without an area.
+/// The aspect, rounded once, at the end; `None` without an area.
 fn exact_aspect(corners: [DVec3; 3]) -> Option<f64> {
     let (product, normal) = exact_parts(corners);
     let normal = normal.length_squared();
@@ -84,7 +84,7 @@ mod tests {
         // n = (4 tiny, -4 tiny, 0).
         let expected = 24.0 / (4.0 * core::f64::consts::SQRT_2 * tiny);
         assert!((kappa / expected - 1.0).abs() < 1e-12, "{kappa:e}, {expected:e}");
-        // The same where the plain difference of products is 0: corners at (1, 1) and (3, 3 + ulp) seen from the origin.
+        // Corners at (0.1, 0.1) and (0.3, 0.3 + ulp), seen from the origin: n = 0.1 ulp.
         let bent = [DVec3::ZERO, DVec3::new(0.1, 0.1, 0.0), DVec3::new(0.3, 0.3_f64.next_up(), 0.0)];
         let ulp = 0.3_f64.next_up() - 0.3;
         assert_eq!((bent[1] - bent[0]).cross(bent[2] - bent[0]).z, 0.1 * (0.3 + ulp) - 0.1 * 0.3);
