@@ -9,7 +9,7 @@ use raypencil::drive::{
     self, DriveExtras, DriveJob, DriveProgress, RecordContents, StripeFile, drive_document, drive_renderer,
     write_drive,
 };
-use raypencil::io::{DriveSetup, Overrides, WaypointFrame, load};
+use raypencil::io::{DriveSetup, Overrides, Setting, WaypointFrame, load};
 
 use crate::args::{self, typed_renderers};
 use crate::console::{Spinner, progress_bar, say};
@@ -83,6 +83,7 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
             return Err(Trouble::Usage(format!("--rule {name} is given twice; expected different rules")));
         }
     }
+    refuse_settings_beside_options(command, &overrides.settings)?;
     if !command.record.is_empty() {
         arguments.push_str(&format!(" --record {}", command.record.join(",")));
     }
@@ -143,4 +144,22 @@ pub(crate) fn drive(command: &args::Drive, json: bool, registry: &Registry) -> R
         say(&format!("  {}\n  beside it: {beside}\n", folder.join("report.html").display()));
     }
     Ok(if run.passes() { Outcome::Fine } else { Outcome::Differs })
+}
+
+/// Refuses a setting of what an option of the drive gives, too: one of the two would count, without a word.
+fn refuse_settings_beside_options(command: &args::Drive, settings: &[Setting]) -> Result<(), Trouble> {
+    let rules = command
+        .rules
+        .iter()
+        .map(|(name, word)| (format!("drive.rules.{name}"), format!("--rule {name}={word}")));
+    let to = command.to.first().map(|[x, y]| ("drive.waypoints_m".to_string(), format!("--to {x},{y}")));
+    for (key, option) in rules.chain(to) {
+        let own = Setting::new(&key, "")?;
+        if let Some(setting) = settings.iter().find(|setting| setting.overlaps(&own)) {
+            return Err(Trouble::Usage(format!(
+                "--set {setting}: {option} sets the same; expected one of the two"
+            )));
+        }
+    }
+    Ok(())
 }

@@ -78,9 +78,12 @@ pub(crate) fn minimise(command: &Minimise, json: bool, registry: &Registry) -> R
             format!("{report:#}\n")
         }
         false => format!(
-            "{what}: {} of {} faces are left, after {} trials.\n\
+            "{what}: {} of {} faces {} left, after {} trials.\n\
              {scene}\n  its terrain: {ground}\n  how to reproduce it: {text}\n",
-            minimised.faces_after, minimised.faces_before, minimised.calls
+            minimised.faces_after,
+            minimised.faces_before,
+            if minimised.faces_after == 1 { "is" } else { "are" },
+            minimised.calls
         ),
     });
     Ok(Outcome::Fine)

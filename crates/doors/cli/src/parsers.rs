@@ -246,6 +246,12 @@ pub(crate) fn number(text: &str) -> Result<f64, String> {
     })
 }
 
+/// `--reflectivity`: a share.
+pub(crate) fn reflectivity(text: &str) -> Result<f64, String> {
+    let share = number(text)?;
+    (0.0..=1.0).contains(&share).then_some(share).ok_or_else(|| "expected 0 to 1".into())
+}
+
 /// `MAP=CHANNEL` of a recording.
 pub(crate) fn declared_channel(text: &str) -> Result<DeclaredChannel, String> {
     text.parse()

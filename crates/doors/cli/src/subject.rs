@@ -50,9 +50,10 @@ pub(crate) fn contenders(
         && contenders.iter().all(|contender| contender.switches.is_none())
     {
         return Err(Trouble::Usage(format!(
-            "--switch {switch}={fidelity}: {} has no switches; expected scanline or scanline-paper among the \
+            "--switch {switch}={fidelity}: {} {} no switches; expected scanline or scanline-paper among the \
              renderers",
-            names.join(", ")
+            names.join(", "),
+            if names.len() == 1 { "has" } else { "have" }
         )));
     }
     for (k, contender) in contenders.iter().enumerate() {

@@ -107,6 +107,12 @@ impl Axis {
         if let Some(twice) = first_twice(keys.iter().map(String::as_str)) {
             return Err(refused(format!("line 1: `{twice}` is given twice; expected different keys")));
         }
+        if keys.len() == 1
+            && let Some(line) = empty_line(bytes)
+        {
+            let expected = "expected a value, or \"\" for the scene's own";
+            return Err(refused(format!("line {line}: an empty line; {expected}")));
+        }
         let mut rows = Vec::new();
         for record in reader.records() {
             let record = record.map_err(|error| refused(error.to_string()))?;
@@ -117,6 +123,12 @@ impl Axis {
         }
         Ok(Self { keys, rows })
     }
+}
+
+/// The first empty line before the end of a file, from 1. A reader of CSV passes over it, where a person may mean an empty value.
+fn empty_line(bytes: &[u8]) -> Option<usize> {
+    let text = bytes.trim_ascii_end();
+    text.split(|&byte| byte == b'\n').position(|line| line.trim_ascii().is_empty()).map(|line| line + 1)
 }
 
 /// A value as tables have it: a whole number of TOML in base 16, 8 or 2 in decimals, so that a column of numbers stays one.

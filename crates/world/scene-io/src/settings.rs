@@ -115,7 +115,7 @@ impl Setting {
 
     /// Whether both set the same value, one of them perhaps as a part of what the other sets. A number within the one key that
     /// the other does not have chooses a table of those that the other means.
-    pub(crate) fn overlaps(&self, other: &Self) -> bool {
+    pub fn overlaps(&self, other: &Self) -> bool {
         meet(&self.parts(), &other.parts(), false)
     }
 
@@ -300,6 +300,13 @@ fn set_in_table(
         return Ok(());
     }
     if !table.contains_key(part) {
+        if index_of(rest[0]).is_some() {
+            let whole = setting.key.strip_suffix(&format!(".{}", rest.join("."))).unwrap_or(part);
+            return Err(setting.refused(format!(
+                "`{whole}` is not in the scene, so that it has no `{}`; expected the whole of it: {whole}=[...]",
+                rest[0]
+            )));
+        }
         let new = if is_inline { Item::Value(InlineTable::new().into()) } else { Item::Table(Table::new()) };
         table.insert(part, new);
     }

@@ -53,7 +53,8 @@ pub(crate) struct CampaignRun {
     pub(crate) scenes: Option<PathBuf>,
 
     /// Scene file whose vehicle, camera and beams stand on each terrain of --scenes.
-    #[arg(long, value_name = "SCENE.toml", requires = "scenes")]
+    // `requires` alone says nothing beside an argument that --scenes cannot stand beside.
+    #[arg(long, value_name = "SCENE.toml", requires = "scenes", conflicts_with = "terrains")]
     pub(crate) rig: Option<PathBuf>,
 
     /// Hunt in another renderer: the shell runs this for each scene, with {pack} replaced by the folder of a pack without

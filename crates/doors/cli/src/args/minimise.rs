@@ -11,8 +11,8 @@ use crate::parsers::class;
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  # The smallest ground on which the printed skip rules miss something.
-  raypencil minimise pyramids --with scanline,tracer --switch skip-rules=paper --class approximation
+  # The smallest ground on which the paper errs by what it asks at the centre of a pixel.
+  raypencil minimise pyramids --with scanline,tracer --switch place=paper --class approximation
   # A defect between two renderers, on a ground of your own.
   raypencil minimise ground.glb -o out/smallest")]
 pub(crate) struct Minimise {

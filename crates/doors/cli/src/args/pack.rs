@@ -47,7 +47,12 @@ pub(crate) struct Pack {
     pub(crate) rays: Option<PathBuf>,
 
     /// With --rays: let rays pass through the backs of faces.
-    #[arg(long, requires = "rays")]
+    // `requires` alone says nothing beside an argument that --rays cannot stand beside.
+    #[arg(
+        long,
+        requires = "rays",
+        conflicts_with_all = ["blind", "no_bench", "input", "fan", "thickness", "flux", "at", "heading", "settings"]
+    )]
     pub(crate) fronts_only: bool,
 
     /// Version of the pack itself, such as 1.0.0: for packs that are passed on.

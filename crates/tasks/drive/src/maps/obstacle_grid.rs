@@ -9,9 +9,9 @@ use crate::maps::occupancy::{Occupancy, OccupancyGrid};
 /// Occupancy of the elevation map's cells, each around its grid point, by the middle of the vehicle's front axle.
 /// `global_from_vehicle` is the pose from which `obstacles` were extracted.
 ///
-/// A cell belongs to the nearest sector. It is free before the sector's end, occupied at an end that is an obstacle,
-/// and unknown elsewhere. Cells under the vehicle are free. A cell that is too far from all tested places is unknown
-/// (`tested_within`).
+/// A cell belongs to the nearest sector. It is free if its nearest tested radius lies before the sector's end, occupied at an end
+/// that is an obstacle, and unknown elsewhere. Nearer than half a step before the first radius, and outside the fan, cells under the
+/// vehicle are free. A cell that is too far from all tested places is unknown (`tested_within`).
 ///
 /// ```
 /// use glam::DVec2;
@@ -49,21 +49,19 @@ pub fn occupancy_grid(
     let [ahead, aside] = tested_within(vehicle);
     let cell = |place: DVec2| {
         let offset = place - obstacles.centre;
-        if vehicle.covers(vehicle_from_global.rotate(offset.extend(0.0)).truncate()) {
-            return Occupancy::Free;
-        }
-        let Some(sector) = nearest_sector(grid, libm::atan2(offset.y, offset.x) - heading) else {
-            return Occupancy::Unknown;
+        let radius = offset.length();
+        let sector = nearest_sector(grid, libm::atan2(offset.y, offset.x) - heading);
+        // From the first radius on, a sector knows more of the front axle than the rectangle of the wheels, which reaches farther ahead.
+        let Some(sector) = sector.filter(|_| radius >= grid.first - 0.5 * grid.step) else {
+            let stands = vehicle.covers(vehicle_from_global.rotate(offset.extend(0.0)).truncate());
+            return if stands { Occupancy::Free } else { Occupancy::Unknown };
         };
         let end = &obstacles.sectors[sector];
-        let radius = offset.length();
         let (sin, cos) = libm::sincos(end.direction);
         let steps = ((radius - grid.first) / grid.step).round().clamp(0.0, f64::from(grid.radii() - 1));
         let from_tested = (radius - grid.radius(steps as u32)).abs();
         match end.label {
-            // Nothing was tested before the first radius of the grid.
-            _ if radius < grid.first - 0.5 * grid.step => Occupancy::Unknown,
-            // Nor between two sectors that are far apart, or two radii.
+            // Nothing was tested between two sectors that are far apart, nor between two radii.
             _ if DVec2::new(cos, sin).perp_dot(offset).abs() > aside => Occupancy::Unknown,
             Label::Obstacle if (radius - end.radius).abs() <= reach => Occupancy::Occupied,
             _ if from_tested > ahead => Occupancy::Unknown,
@@ -149,6 +147,18 @@ mod tests {
         let obstacles = ObstacleMap::extract(&map, &vehicle, &rules, &grid, &Pose::IDENTITY);
         let cells = occupancy_grid(&map, &obstacles, &grid, &vehicle, &Pose::IDENTITY).cells;
         move |x, y| cells[(((y + 10.05) / 0.1) as usize) * 201 + ((x + 10.05) / 0.1) as usize]
+    }
+
+    #[test]
+    fn an_obstacle_within_the_rectangle_of_the_wheels_is_occupied() {
+        use Occupancy::{Free, Occupied, Unknown};
+        // The wheels reach 0.95 m ahead of the origin, the front axle is tested from 0.7 m on, and by the printed rules it may come up to
+        // the wall, 0.9 m ahead.
+        let at = before_a_wall(0.85, |grid| grid);
+        let ahead = [0.0, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0].map(|x| at(x, 0.0));
+        assert_eq!(ahead, [Free, Free, Free, Free, Free, Occupied, Unknown]);
+        // Outside the fan the vehicle stands, and nothing else is known.
+        assert_eq!([0.5, 0.6, 0.7].map(|y| at(0.5, y)), [Free, Free, Unknown]);
     }
 
     #[test]

@@ -206,3 +206,19 @@ fn charts_are_drawn_of_parameters_with_several_numbers() {
     let charts = default_charts(&SweepTable::new(&list), Task::Render);
     assert_eq!(charts.iter().map(|chart| chart.parameter.as_str()).collect::<Vec<_>>(), ["a", "b"]);
 }
+
+#[test]
+fn an_empty_line_of_a_list_is_a_run_for_nobody() {
+    let list = |text: &str| Axis::list_from_bytes(text.as_bytes(), "list.csv".as_ref());
+    // In a list of one key it may stand for an empty value, which a reader of CSV passes over.
+    for text in ["k\n15\n\n20\n", "k\r\n15\r\n \r\n20\r\n"] {
+        let error = list(text).unwrap_err().to_string();
+        assert!(
+            error.contains("list.csv") && error.contains("line 3: an empty line") && error.contains("\"\""),
+            "{error}"
+        );
+    }
+    // Written out it is one, and empty lines at the end are none.
+    assert_eq!(list("k\n15\n\"\"\n20\n\n\n").unwrap().rows.len(), 3);
+    assert_eq!(list("k,m\n15,1\n\n20,2\n").unwrap().rows.len(), 2);
+}

@@ -50,8 +50,9 @@ impl SpikeFacts {
         let Self { count, worst: [x, y, _], stands_out, rest } = self;
         let side = if *stands_out < 0.0 { "below" } else { "above" };
         let stands_out = stands_out.abs();
+        let stand = if *count == 1 { "stands" } else { "stand" };
         format!(
-            "{count} of the posts stand out: the worst, at ({x}, {y}), is {stands_out:.1} m {side} all others, which span {rest:.1} m"
+            "{count} of the posts {stand} out: the worst, at ({x}, {y}), is {stands_out:.1} m {side} all others, which span {rest:.1} m"
         )
     }
 }

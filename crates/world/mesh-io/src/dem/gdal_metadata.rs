@@ -16,10 +16,10 @@ impl GdalMetadata {
     /// Reads the tag, and refuses heights that GDAL would scale or shift.
     pub fn read(tags: &Tags, file: &mut (impl Read + Seek)) -> Result<Self, Fault> {
         let metadata = Self(tags.text(file, METADATA)?.unwrap_or_default());
-        for (role, neutral) in [("scale", 1.0), ("offset", 0.0)] {
+        for (role, one, neutral) in [("scale", "a scale", 1.0), ("offset", "an offset", 0.0)] {
             if let Some(value) = metadata.item(role).filter(|value| value.parse() != Ok(neutral)) {
                 let expected = format!("{neutral}: apply it first (gdal_translate -unscale)");
-                return Err(Fault::new(tag_name(METADATA), format!("a {role} of {value:?}"), expected));
+                return Err(Fault::new(tag_name(METADATA), format!("{one} of {value:?}"), expected));
             }
         }
         Ok(metadata)

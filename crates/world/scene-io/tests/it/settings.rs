@@ -140,6 +140,10 @@ fn errors_name_the_setting_or_the_line() {
     }
     let message = refused("pyramids", &["beam.2.power_w=1"]);
     assert_eq!(message, "set beam.2.power_w=1: `beam.2` is not there; expected 0 to 1, for the scene has 2");
+    // A list that the scene leaves to its default has no single numbers.
+    let message = refused("pyramids", &["camera.position_m.2=2"]);
+    let expected = "`camera.position_m` is not in the scene, so that it has no `2`; expected the whole of it: camera.position_m=[...]";
+    assert_eq!(message, format!("set camera.position_m.2=2: {expected}"));
     // A whole table has keys, and one place has one name.
     let message = refused("pyramids", &["beam.0=1"]);
     assert_eq!(message, "set beam.0=1: `beam.0` is 1; expected a table of keys, { ... }");

@@ -53,7 +53,8 @@ pub(crate) struct TerrainGenerate {
     pub(crate) coarse: Option<PathBuf>,
 
     /// Part of the elevation model: x and y of its lower left corner, width and height, metres of the map.
-    #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", requires = "coarse", allow_hyphen_values = true, value_parser = window)]
+    // `requires` alone says nothing beside an argument that --coarse cannot stand beside.
+    #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", requires = "coarse", conflicts_with = "extent", allow_hyphen_values = true, value_parser = window)]
     pub(crate) window: Option<[f64; 4]>,
 
     /// Output file.

@@ -6,7 +6,7 @@ use clap::Args;
 use raypencil::io::{DEFAULT_REFLECTIVITY, UpAxis};
 
 use super::dem::DemArgs;
-use crate::parsers::{named_file, number, numbers, up_axis};
+use crate::parsers::{named_file, number, numbers, reflectivity, up_axis};
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
@@ -41,7 +41,7 @@ pub(crate) struct TerrainImport {
     pub(crate) max_error: Option<f64>,
 
     /// Reflectivity of the terrain, 0 to 1; in glTF, of the materials that state none.
-    #[arg(long, value_name = "R", default_value_t = DEFAULT_REFLECTIVITY, allow_hyphen_values = true, value_parser = number)]
+    #[arg(long, value_name = "R", default_value_t = DEFAULT_REFLECTIVITY, allow_hyphen_values = true, value_parser = reflectivity)]
     pub(crate) reflectivity: f64,
 
     /// Output file.

@@ -1,4 +1,4 @@
-//! `--quiet` and `--color`.
+//! `--quiet` and `--color`; arguments that would be passed over without a word.
 
 use std::path::{Path, PathBuf};
 
@@ -91,4 +91,40 @@ fn as_many_threads_as_there_may_be_are_taken_from_the_environment() {
     for threads in ["1025", "-1", "many"] {
         assert_trouble(&run(threads), &[threads, "expected a number of threads from 1 to 1024"]);
     }
+}
+
+#[test]
+fn no_argument_is_passed_over_because_another_one_displaces_what_it_needs() {
+    // Each of these needs one that cannot stand beside the other argument given, so that "it needs" alone would not be asked.
+    let folder = tempfile::TempDir::new().unwrap();
+    for (line, words) in [
+        ("campaign --terrains 1 --rig nowhere.toml", ["--rig", "--terrains"]),
+        ("terrain generate --extent 6 --window 1,2,3,4 -o g.glb", ["--window", "--extent"]),
+        ("pack pyramids --no-bench --fronts-only -o p", ["--fronts-only", "--no-bench"]),
+        ("pack --input --fronts-only -o p", ["--fronts-only", "--input"]),
+        ("pack pyramids --fan 60 --fronts-only -o p", ["--fronts-only", "--fan"]),
+    ] {
+        let output = raypencil(folder.path(), &line.split(' ').collect::<Vec<_>>());
+        assert_trouble(&output, &[&["cannot be used with"], &words[..]].concat());
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn a_setting_beside_the_option_of_a_drive_for_the_same_is_refused() {
+    let folder = tempfile::TempDir::new().unwrap();
+    for (line, words) in [
+        (
+            "drive pyramids --rule gap=paper --set drive.rules.gap=mended",
+            ["drive.rules.gap=mended", "--rule gap=paper"],
+        ),
+        (
+            "drive pyramids --to 1,0 --set drive.waypoints_m=[[1,0]]",
+            ["drive.waypoints_m=[[1,0]]", "--to 1,0"],
+        ),
+    ] {
+        let output = raypencil(folder.path(), &line.split(' ').collect::<Vec<_>>());
+        assert_trouble(&output, &[&["sets the same; expected one of the two"], &words[..]].concat());
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }

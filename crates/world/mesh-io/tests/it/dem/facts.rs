@@ -25,7 +25,7 @@ fn the_worst_spike_is_told_with_its_place() {
     assert_eq!((spikes.count, spikes.worst), (1, [13.75, 2.0, 900.0]));
     assert_eq!((spikes.stands_out, spikes.rest), (900.0 - 1.1875, 1.1875));
     let words =
-        "1 of the posts stand out: the worst, at (13.75, 2), is 898.8 m above all others, which span 1.2 m";
+        "1 of the posts stands out: the worst, at (13.75, 2), is 898.8 m above all others, which span 1.2 m";
     assert_eq!(spikes.words(), words);
     assert_eq!(dem.facts().lines().last().unwrap(), &("warning", words.to_string()));
     assert_eq!(

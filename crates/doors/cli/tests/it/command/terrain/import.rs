@@ -295,7 +295,9 @@ fn a_constant_that_nobody_declared_is_refused_wherever_a_model_is_read() {
     with_constant(path, -32768.0, 1);
     let out = screen(path, &["terrain", "inspect", "hole.tif"], 0);
     assert!(
-        out.contains("1 of the posts stand out: the worst, at (1000001, 499), is 32868.0 m below all others"),
+        out.contains(
+            "1 of the posts stands out: the worst, at (1000001, 499), is 32868.0 m below all others"
+        ),
         "{out}"
     );
 }
