@@ -55,7 +55,7 @@ struct InfoKeys {
     #[serde(default)]
     binning_y: Option<Spanned<i64>>,
     #[serde(default)]
-    roi: Option<RegionKeys>,
+    roi: Option<Spanned<RegionKeys>>,
 }
 
 /// The part of the image that the camera sends. All zeros: the whole image.
@@ -69,6 +69,13 @@ struct RegionKeys {
     width: i64,
     #[serde(default)]
     height: i64,
+}
+
+impl RegionKeys {
+    /// Offsets in x and y, width and height, pixels.
+    fn part(&self) -> [i64; 4] {
+        [self.x_offset, self.y_offset, self.width, self.height]
+    }
 }
 
 /// A list of numbers: alone, as messages have it, or as `data` of a matrix, as files have it.
@@ -175,7 +182,7 @@ impl InfoKeys {
     fn without_places(&self) -> impl PartialEq {
         let numbers = |keys: &Option<Spanned<Numbers>>| keys.as_ref().map(|keys| keys.value.clone());
         let count = |key: &Option<Spanned<i64>>| key.as_ref().map(|key| key.value);
-        let roi = self.roi.as_ref().map(|roi| [roi.x_offset, roi.y_offset, roi.width, roi.height]);
+        let roi = self.roi.as_ref().map(|roi| roi.value.part());
         (
             [self.image_width.value, self.image_height.value],
             self.camera_matrix.value.clone(),
@@ -196,12 +203,12 @@ impl InfoKeys {
             }
         }
         if let Some(roi) = &self.roi {
-            let part = [roi.x_offset, roi.y_offset, roi.width, roi.height];
+            let part = roi.value.part();
             if part != [0; 4] && part != [0, 0, size[0], size[1]] {
                 let message = format!(
                     "the camera sends a part of the image, `roi` {part:?}; expected the whole image, zeros"
                 );
-                return Err(source.error(span(source, &self.camera_matrix.referenced), message));
+                return Err(source.error(span(source, &roi.referenced), message));
             }
         }
         self.check_shapes(source)?;
@@ -390,7 +397,7 @@ mod tests {
             (message("binning_x: 0", "binning_x: 2"), "the camera merges 2 pixels into one; expected 0 or 1"),
             (
                 message("x_offset: 0", "x_offset: 8"),
-                "the camera sends a part of the image, `roi` [8, 0, 0, 0]",
+                "left.yaml:30:3: the camera sends a part of the image, `roi` [8, 0, 0, 0]",
             ),
             (
                 message("- 600.0\n", "- north\n"),

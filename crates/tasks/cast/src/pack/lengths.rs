@@ -99,7 +99,36 @@ pub(super) fn lengths(trial: &Trial, exact: &ExactCast<'_>, sides: Sides) -> Vec
             ));
         }
     }
+    if t.is_some() && trial.stated.point.is_some() {
+        list.extend(UNITS.into_iter().flat_map(|(unit, by)| beside_t(unit, by, range.is_some())));
+    }
     list
+}
+
+/// Units of ranges and points beside a right t: where mesh and rays are in that unit both, t is the same.
+const UNITS: [(&str, f64); 4] = [
+    ("thousandths of the mesh's unit", 1e-3),
+    ("hundredths of the mesh's unit", 1e-2),
+    ("thousands of the mesh's unit", 1e3),
+    ("feet", 0.3048),
+];
+
+/// Points in another unit, and ranges with them if there are any; or points alone.
+fn beside_t(unit: &str, by: f64, has_range: bool) -> impl Iterator<Item = Extra<'static>> {
+    let with_range = has_range.then_some((format!("ranges and points are in {unit}, and t is right"), true));
+    let list = with_range.into_iter().chain([(format!("points are in {unit}"), false)]);
+    list.map(move |(words, is_range)| {
+        let undo = move |trial: &mut Trial| {
+            let stated = &mut trial.stated;
+            stated.point.iter_mut().flatten().for_each(|point| *point *= by);
+            stated.stored.point.iter_mut().flatten().for_each(|error| *error *= by);
+            if is_range {
+                stated.range.iter_mut().flatten().for_each(|range| *range *= by);
+                stated.stored.range.iter_mut().flatten().for_each(|error| *error *= by);
+            }
+        };
+        Extra { words, undo: Box::new(undo), is_common: false, group: Group::Factors }
+    })
 }
 
 /// Factors and lengths by which most rays are off, in pairs of the stated and the exact one, and whether each is a factor. Those of few decimals come first, and of

@@ -164,7 +164,7 @@ fn with_digits(vector: DVec3, digits: i32) -> DVec3 {
     DVec3::from_array(vector.to_array().map(part))
 }
 
-/// A shift of the mesh against the rays, if lengths are off by one.
+/// A shift of the mesh against the rays, if lengths are off by one. Points tell whether the mesh or the origins are moved.
 pub(super) fn shifts(trial: &Trial, exact: &ExactCast<'_>) -> Vec<Extra<'static>> {
     let every = trial.rays.len().div_ceil(MAX_FITTED).max(1);
     let value = if trial.stated.t.is_some() { CastValue::T } else { CastValue::Range };
@@ -183,13 +183,26 @@ pub(super) fn shifts(trial: &Trial, exact: &ExactCast<'_>) -> Vec<Extra<'static>
             found.push(shift);
         }
     }
-    let extra = |shift: DVec3| {
-        let [x, y, z] = (shift + DVec3::ZERO).to_array();
-        let words = format!(
-            "the mesh is shifted by ({x}, {y}, {z}) against the rays, or their origins by as much the other way"
-        );
-        let undo = move |trial: &mut Trial| trial.rays.iter_mut().for_each(|ray| ray.origin -= shift);
+    let has_points = trial.stated.point.is_some();
+    let words = |of: &str, by: DVec3| {
+        let [x, y, z] = (by + DVec3::ZERO).to_array();
+        format!("{of} shifted by ({x}, {y}, {z})")
+    };
+    let extra = |words: String, shift: DVec3, of_points: DVec3| {
+        let undo = move |trial: &mut Trial| {
+            trial.rays.iter_mut().for_each(|ray| ray.origin -= shift);
+            trial.stated.point.iter_mut().flatten().for_each(|point| *point -= of_points);
+        };
         Extra { words, undo: Box::new(undo), is_common: false, group: Group::Others }
     };
-    found.into_iter().map(extra).collect()
+    let extras = |shift: DVec3| {
+        let mesh = words("the mesh is", shift) + " against the rays";
+        if !has_points {
+            return vec![extra(mesh + ", or their origins by as much the other way", shift, DVec3::ZERO)];
+        }
+        let origins = words("the origins of the rays are", -shift) + " against the mesh";
+        // The points of a shifted mesh are shifted with it.
+        vec![extra(mesh, shift, shift), extra(origins, shift, DVec3::ZERO)]
+    };
+    found.into_iter().flat_map(extras).collect()
 }

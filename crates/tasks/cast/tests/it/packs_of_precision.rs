@@ -33,6 +33,16 @@ fn moved(mesh: &Triangles, to: impl Fn(usize, DVec3) -> DVec3) -> Triangles {
 
 /// A pack upon a mesh, and what `check` says of the exact answers upon another one.
 fn judged(mesh: &Triangles, other: &Triangles, change: impl Fn(&mut CastRay)) -> RayPackChecked {
+    judged_without(&["point", "normal", "barycentric", "cos_incidence"], mesh, other, change)
+}
+
+/// The same, where the answers lack these arrays.
+fn judged_without(
+    lacking: &[&str],
+    mesh: &Triangles,
+    other: &Triangles,
+    change: impl Fn(&mut CastRay),
+) -> RayPackChecked {
     let [pack, candidate] = [(); 2].map(|()| tempfile::tempdir().expect("a folder"));
     let asked = rays();
     write_ray_pack(pack.path(), (mesh, &asked, Sides::Both), &source(), &Silent).expect("a pack");
@@ -40,7 +50,7 @@ fn judged(mesh: &Triangles, other: &Triangles, change: impl Fn(&mut CastRay)) ->
     changed.rays.iter_mut().for_each(change);
     let answers = cast(other, &changed.rays, Sides::Both, Questions::default(), &Silent);
     write_answers(candidate.path(), &answers, (other, &changed, Sides::Both), &source()).expect("answers");
-    for name in ["point", "normal", "barycentric", "cos_incidence"] {
+    for name in lacking {
         std::fs::remove_file(candidate.path().join(format!("{name}.npy"))).expect("a file");
     }
     let conventions = CandidateConventions::default();
@@ -81,6 +91,25 @@ fn a_shift_is_told_as_itself() {
             assert!(!checked.passes());
             let told = format!("if the mesh is shifted by {words} against the rays");
             assert!(checked.why.as_ref().is_some_and(|why| why.contains(&told)), "{:?}", checked.why);
+        }
+    }
+}
+
+#[test]
+fn points_tell_a_shift_of_the_mesh_from_one_of_the_origins() {
+    let (mesh, shift) = (turned(), DVec3::new(0.25, 0.0, -0.125));
+    for lacking in [&["normal"][..], &["t"], &["range", "barycentric"]] {
+        let of_mesh = judged_without(lacking, &mesh, &moved(&mesh, |_, corner| corner + shift), |_| {});
+        let of_origins = judged_without(lacking, &mesh, &mesh, |ray| ray.origin -= shift);
+        for (checked, words) in [
+            (of_mesh, "agree if the mesh is shifted by (0.25, 0, -0.125) against the rays"),
+            (
+                of_origins,
+                "agree if the origins of the rays are shifted by (-0.25, 0, 0.125) against the mesh",
+            ),
+        ] {
+            assert!(!checked.passes());
+            assert!(checked.why.as_ref().is_some_and(|why| why.ends_with(words)), "{:?}", checked.why);
         }
     }
 }

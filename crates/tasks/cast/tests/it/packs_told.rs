@@ -342,6 +342,22 @@ fn small_errors_are_told_as_what_they_are() {
     right().change("t", |_, t| t * 1.25).expect_why(&["100.0000 %", "if t is 1.25 times what it is"]);
     right().change("range", |_, range| range - 0.5).expect_why(&["if the range is 0.5 too short"]);
     right().change("range", |_, range| range * 0.75).expect_why(&["if the range is 0.75 times what it is"]);
+    // Mesh and rays in another unit both: t is the same.
+    for (by, unit) in [
+        (1e3, "thousandths of the mesh's unit"),
+        (100.0, "hundredths of"),
+        (1e-3, "thousands of"),
+        (1.0 / 0.3048, "feet"),
+    ] {
+        let points = || Folders::right().change("point", |_, part| part * by);
+        points().change("range", |_, range| range * by).expect_why(&[
+            "100.0000 %",
+            &format!("if ranges and points are in {unit}"),
+            "and t is right",
+        ]);
+        points().expect_why(&["100.0000 %", &format!("if points are in {unit}")]);
+        points().without(&["range"]).expect_why(&["100.0000 %", &format!("if points are in {unit}")]);
+    }
     // Decimals.
     for decimals in [4, 6, 7, 8] {
         let ten = libm::pow(10.0, f64::from(decimals));
